@@ -1,0 +1,23 @@
+//! Compiles `proto/` to Rust and keeps its descriptor for the reflection service.
+//!
+//! protox is a protobuf compiler in Rust, so a machine needs no `protoc`.
+
+use std::path::PathBuf;
+use std::{env, error::Error, fs};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo::rerun-if-changed=proto");
+    println!("cargo::rerun-if-changed=build.rs");
+    if env::var_os("CARGO_FEATURE_GRPC").is_none() {
+        return Ok(());
+    }
+    let files = ["geometry", "scene", "robot", "query", "service"]
+        .map(|name| format!("proto/clearance/v1/{name}.proto"));
+    let descriptors = protox::compile(files, ["proto"])?;
+    let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
+    fs::write(out.join("clearance.descriptors"), prost::Message::encode_to_vec(&descriptors))?;
+    let mut config = prost_build::Config::new();
+    config.bytes(["."]);
+    tonic_prost_build::configure().compile_fds_with_config(descriptors, config)?;
+    Ok(())
+}

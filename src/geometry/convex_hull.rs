@@ -1,0 +1,151 @@
+//! The convex hull of a cloud of points, as the few points that support it.
+
+use super::shape::position;
+use super::tolerance::UNIT_ROUNDOFF;
+use super::{Aabb, InvalidShape, Vec3};
+
+/// The convex hull of some points, possibly flat, a segment or a single point.
+///
+/// Only the points are kept: a support function needs no faces. The hull builder's answer is used to leave out inner
+/// points, and it is checked against every input point first; where it fails the check (or gives up, as builders do on
+/// slivers), the distinct input points are kept as they are. So a hull is as exact as the points it was made from.
+#[derive(Clone, Debug)]
+pub struct ConvexHull {
+    points: Vec<Vec3>,
+    bounds: Aabb,
+    radius: f64,
+}
+
+impl ConvexHull {
+    /// # Errors
+    /// No points, or one that is not finite or out of reach.
+    pub fn new(points: &[Vec3]) -> Result<Self, InvalidShape> {
+        if points.is_empty() {
+            return Err(InvalidShape::Empty { field: "points" });
+        }
+        for (i, p) in points.iter().enumerate() {
+            position(|| format!("points[{i}]"), *p)?;
+        }
+        let distinct = distinct(points);
+        let points = extreme_points(&distinct).unwrap_or(distinct);
+        let bounds = Aabb::around(points.iter().copied());
+        let radius = points.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt();
+        Ok(Self { points, bounds, radius })
+    }
+
+    /// The points that span the hull, in the order given, without duplicates.
+    #[must_use]
+    pub fn points(&self) -> &[Vec3] {
+        &self.points
+    }
+
+    /// Bounds in the hull's frame.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Largest distance of a point from the origin, metres.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Every length multiplied by `factor`.
+    pub(super) fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
+        Self::new(&self.points.iter().map(|p| p * factor).collect::<Vec<_>>())
+    }
+}
+
+/// The points without repetitions, first occurrences in order.
+fn distinct(points: &[Vec3]) -> Vec<Vec3> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    let key = |i: usize| [points[i].x + 0.0, points[i].y + 0.0, points[i].z + 0.0]; // + 0.0: -0 equals 0
+    order.sort_by(|&i, &j| key(i).partial_cmp(&key(j)).expect("points are finite").then(i.cmp(&j)));
+    order.dedup_by(|later, first| key(*later) == key(*first));
+    order.sort_unstable();
+    order.into_iter().map(|i| points[i]).collect()
+}
+
+/// The hull's corners, by parry's hull builder, if its answer stands up to a check; `None` means keep every point.
+fn extreme_points(points: &[Vec3]) -> Option<Vec<Vec3>> {
+    use parry3d_f64::math::Vector;
+    use parry3d_f64::transformation::try_convex_hull;
+
+    if points.len() < 5 {
+        return None; // Nothing much to leave out.
+    }
+    // The builder has absolute tolerances, so it is shown points of unit size, centred. Both steps round, but its
+    // answer is only a choice among our points, and the check below is made with the points as given.
+    let bounds = Aabb::around(points.iter().copied());
+    let (center, size) = (bounds.center(), bounds.half_extents().amax());
+    if size <= f64::MIN_POSITIVE {
+        return None;
+    }
+    let unit: Vec<Vector> = points.iter().map(|p| (p - center) / size).map(|p| Vector::new(p.x, p.y, p.z)).collect();
+    // A builder that panics on a degenerate cloud is a builder that gave up.
+    let (corners, faces) = std::panic::catch_unwind(|| try_convex_hull(&unit)).ok()?.ok()?;
+    let mut kept = vec![false; points.len()];
+    let mut faces_by_point = Vec::with_capacity(faces.len());
+    let position_of = |corner: &Vector| unit.iter().position(|p| p == corner);
+    let index: Vec<usize> = corners.iter().map(position_of).collect::<Option<_>>()?;
+    for face in &faces {
+        let face = face.map(|corner| index[corner as usize]);
+        face.iter().for_each(|&i| kept[i] = true);
+        faces_by_point.push(face);
+    }
+    let enclosed = points.iter().zip(&kept).all(|(p, kept)| *kept || is_enclosed(*p, points, &faces_by_point, size));
+    enclosed.then(|| points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(p, _)| *p).collect())
+}
+
+/// Whether `p` is behind every face, to a few units in the last place of the hull's size. A face too thin to have a
+/// trustworthy plane encloses nothing: the whole answer is then not used.
+fn is_enclosed(p: Vec3, points: &[Vec3], faces: &[[usize; 3]], size: f64) -> bool {
+    faces.iter().all(|face| {
+        let [a, b, c] = face.map(|i| points[i]);
+        let normal = (b - a).cross(&(c - a));
+        let area = normal.norm();
+        let thin = area <= 1e-3 * (b - a).norm() * (c - a).norm();
+        !thin && normal.dot(&(p - a)) <= 4.0 * UNIT_ROUNDOFF * size * area
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube_corners() -> Vec<Vec3> {
+        (0..8).map(|i| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))).collect()
+    }
+
+    #[test]
+    fn duplicates_and_inner_points_are_left_out() {
+        let mut points = cube_corners();
+        points.push(Vec3::new(0.5, 0.5, 0.5));
+        points.extend(cube_corners());
+        points.push(Vec3::new(0.25, 0.5, 0.75));
+        let hull = ConvexHull::new(&points).unwrap();
+        assert_eq!(hull.points(), cube_corners());
+    }
+
+    #[test]
+    fn flat_and_collinear_clouds_keep_what_spans_them() {
+        let square: Vec<Vec3> = (0..25).map(|i| Vec3::new(f64::from(i % 5), f64::from(i / 5), 2.0)).collect();
+        let hull = ConvexHull::new(&square).unwrap();
+        for corner in [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0), (4.0, 4.0)] {
+            assert!(hull.points().contains(&Vec3::new(corner.0, corner.1, 2.0)));
+        }
+        let line: Vec<Vec3> = (0..9).map(|i| Vec3::new(f64::from(i), 0.0, 0.0)).collect();
+        let hull = ConvexHull::new(&line).unwrap();
+        assert!(hull.points().contains(&line[0]) && hull.points().contains(&line[8]));
+        let point = ConvexHull::new(&[Vec3::x(), Vec3::x(), Vec3::x()]).unwrap();
+        assert_eq!(point.points(), [Vec3::x()]);
+    }
+
+    #[test]
+    fn empty_and_non_finite_clouds_are_refused_by_name() {
+        assert_eq!(ConvexHull::new(&[]).unwrap_err(), InvalidShape::Empty { field: "points" });
+        let error = ConvexHull::new(&[Vec3::zeros(), Vec3::new(0.0, f64::NAN, 0.0)]).unwrap_err();
+        assert_eq!(error.to_string(), "points[1] is not finite");
+    }
+}

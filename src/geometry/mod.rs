@@ -1,0 +1,29 @@
+//! Ground floor: shapes, poses and bounds as plain, checked numbers.
+//!
+//! A value of a type from here has passed its checks, so nothing above needs to ask again whether a number is finite.
+//! Metres, radians, right-handed frames, `f64` throughout.
+
+mod aabb;
+mod compound;
+mod convex_hull;
+mod invalid_shape;
+mod mesh_tree;
+mod pose;
+mod shape;
+pub mod tolerance;
+mod triangle_mesh;
+
+pub use aabb::Aabb;
+pub use compound::{Compound, Part};
+pub use convex_hull::ConvexHull;
+pub use invalid_shape::InvalidShape;
+pub use mesh_tree::{MeshTree, TreeNode};
+pub use pose::{InvalidPose, Placement, Pose, Quaternion};
+pub use shape::{Core, Shape};
+pub use triangle_mesh::TriangleMesh;
+
+/// A point, a direction or a difference of points.
+pub type Vec3 = nalgebra::Vector3<f64>;
+
+/// A rotation, or a product of rotations, by rows.
+pub type Mat3 = nalgebra::Matrix3<f64>;

@@ -1,0 +1,21 @@
+//! Every numeric constant of the kernel: value, unit, reason, and what breaks if it is changed.
+
+/// Unit roundoff of `f64`: the largest relative error of one correctly rounded operation.
+pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// Error of one support value or one Minkowski vertex, in units of [`UNIT_ROUNDOFF`] times the extent
+/// S = r_A + r_B + |t|. `docs/derivations/bracket.md` adds up the pose (matrix from quaternion, product of
+/// two matrices, rotated difference of positions), the support point and the dot product, and arrives below 80.
+/// Smaller would let a bracket miss the truth; larger only widens it.
+pub const SUPPORT_ERROR_ULPS: f64 = 96.0;
+
+/// Largest coordinate or size of a shape, metres. The solver scales pairs to unit extent, so that squares do not
+/// overflow there; the trees take products of three lengths, which 1e100 still leaves finite.
+pub const LARGEST_LENGTH: f64 = 1e102;
+
+/// A pair is rescaled by a power of two when its extent leaves this range, metres. Inside it, products of
+/// six lengths neither overflow nor underflow; outside, volumes would.
+pub const UNSCALED_EXTENT: (f64, f64) = (1e-20, 1e20);
+
+/// Relative width at which a bracket counts as closed when the caller does not say.
+pub const DEFAULT_RELATIVE_TOLERANCE: f64 = 1e-9;

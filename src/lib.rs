@@ -1,0 +1,6 @@
+//! `clearance`: how far apart, touching or not, which pair, where, and since when is that true.
+
+pub mod geometry;
+pub mod narrow_phase;
+pub mod query;
+pub mod scene;

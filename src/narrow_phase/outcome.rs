@@ -1,0 +1,86 @@
+//! What is known about a pair when the work on it ends.
+
+use std::ops::AddAssign;
+
+use crate::geometry::Vec3;
+
+/// A proved interval: the signed distance, in the truth, is in `lower..=upper`. Metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bracket {
+    /// Apart: from a separating direction. In an overlap: minus a proved upper bound of the depth.
+    pub lower: f64,
+    /// Apart: from a pair of witness points. In an overlap: minus a proved lower bound of the depth.
+    pub upper: f64,
+}
+
+impl Bracket {
+    /// Width, metres.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.upper - self.lower
+    }
+}
+
+/// How the work on a pair stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Termination {
+    /// A formula gave the answer at once.
+    ClosedForm,
+    /// The bracket is as narrow as was asked.
+    Converged,
+    /// The bracket decided what was asked before it was narrow.
+    Decided,
+    /// The bracket is as narrow as the rounding of the numbers lets it be.
+    RoundingFloor,
+    /// The cap on iterations was reached; the bracket is valid, and wider than was asked.
+    IterationLimit,
+}
+
+/// What the work cost. Counters only, so that equal work has equal bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Support points of a Minkowski difference (two shapes each).
+    pub supports: u64,
+    /// Rounds of GJK.
+    pub gjk_iterations: u64,
+    /// Rounds of EPA.
+    pub epa_iterations: u64,
+    /// Nodes of trees that were opened.
+    pub nodes: u64,
+    /// Pairs of convex shapes that the narrow phase looked at.
+    pub pairs: u64,
+}
+
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Self) {
+        self.supports += other.supports;
+        self.gjk_iterations += other.gjk_iterations;
+        self.epa_iterations += other.epa_iterations;
+        self.nodes += other.nodes;
+        self.pairs += other.pairs;
+    }
+}
+
+/// What is known about one pair of shapes A and B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Separation {
+    /// The proof.
+    pub bracket: Bracket,
+    /// The best estimate inside the bracket, metres; negative: minus the depth.
+    pub signed_distance: f64,
+    /// Unit vector from A to B.
+    pub normal: Vec3,
+    /// Witness on A; `point_on_b - point_on_a = signed_distance * normal`. Metres, in the frame of both placements.
+    pub point_on_a: Vec3,
+    /// Witness on B.
+    pub point_on_b: Vec3,
+    /// How the work stopped.
+    pub termination: Termination,
+    /// Which triangle of a mesh or part of a compound decided, on A; 0 for a single convex shape. A mesh within a
+    /// compound: the part.
+    pub subshape_a: u32,
+    /// The same on B.
+    pub subshape_b: u32,
+    /// What it cost.
+    pub cost: Cost,
+}

@@ -1,0 +1,163 @@
+//! What is answered. Sorted and deterministic: equal questions to equal snapshots get equal bytes.
+
+use crate::geometry::Vec3;
+use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::scene::{BodyId, Epoch, Revision};
+
+/// What the bracket decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Proved apart, farther than the margin.
+    Free,
+    /// Proved apart, and proved within the margin.
+    Margin,
+    /// Proved to touch or overlap.
+    Collision,
+    /// The bracket straddles the decision.
+    Indeterminate(Indeterminacy),
+    /// Not looked at: an earlier item stopped the batch, or the time ran out.
+    NotRun,
+    /// The item cannot be asked; the message names the field.
+    InvalidInput(String),
+}
+
+/// Why a bracket straddles the decision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Indeterminacy {
+    /// The numbers as given do not decide it within the rounding of `f64`.
+    Rounding,
+    /// The cap on iterations was reached first.
+    IterationLimit,
+}
+
+/// One side of a pair.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// A link of the robot that was asked about: its index in the robot's links.
+    Link {
+        /// Index in the robot's links.
+        link: u32,
+        /// Which of the link's shapes.
+        shape: u32,
+        /// Triangle of a mesh or part of a compound.
+        subshape: u32,
+    },
+    /// The bare shape of the question.
+    Query {
+        /// Triangle of a mesh or part of a compound.
+        subshape: u32,
+    },
+    /// A body of the scene.
+    Body {
+        /// Its id.
+        id: BodyId,
+        /// Triangle of a mesh or part of a compound.
+        subshape: u32,
+    },
+}
+
+/// Points and normal of a pair, world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Witness {
+    /// On side A, metres.
+    pub point_on_a: Vec3,
+    /// On side B, metres.
+    pub point_on_b: Vec3,
+    /// Unit vector from A to B.
+    pub normal: Vec3,
+}
+
+/// What is known about one pair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairAnswer {
+    /// The robot's link or the query's shape if there is one, else the lower id.
+    pub a: Side,
+    /// The other side.
+    pub b: Side,
+    /// Of this pair alone.
+    pub verdict: Verdict,
+    /// The proof.
+    pub bracket: Bracket,
+    /// Best estimate inside the bracket, metres.
+    pub signed_distance: f64,
+    /// Where wanted.
+    pub witness: Option<Witness>,
+    /// How the work on the pair stopped.
+    pub termination: Termination,
+}
+
+/// The answer to one item.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ItemAnswer {
+    /// The first that applies to any pair in the order collision, indeterminate, margin, free.
+    pub verdict: Verdict,
+    /// Wanted distance: the pair of least signed distance; none when there was no pair to look at or none within the
+    /// cut-off. Wanted verdict alone: the pair that decided, if one did.
+    pub nearest: Option<PairAnswer>,
+    /// Of states, wanted distance: the nearest pair of two links.
+    pub nearest_self: Option<PairAnswer>,
+    /// Of states, wanted distance: the nearest pair of a link and a body.
+    pub nearest_scene: Option<PairAnswer>,
+    /// Where wanted: the pairs that collide, cannot be decided or are within the margin, in order of their sides.
+    pub pairs: Vec<PairAnswer>,
+    /// More pairs were there than the limit lets through.
+    pub truncated: bool,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+impl ItemAnswer {
+    /// An item that no work was done for.
+    #[must_use]
+    pub fn without_work(verdict: Verdict) -> Self {
+        Self {
+            verdict,
+            nearest: None,
+            nearest_self: None,
+            nearest_scene: None,
+            pairs: Vec::new(),
+            truncated: false,
+            cost: Cost::default(),
+        }
+    }
+}
+
+/// The answer to a request.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    /// Which life of the scene was asked.
+    pub epoch: Epoch,
+    /// Which state of it.
+    pub revision: Revision,
+    /// One for each item of the request, in its order.
+    pub items: Vec<ItemAnswer>,
+    /// In `StopAtFirst`: the index of the item that stopped the batch.
+    pub stopped_at: Option<usize>,
+    /// The time ran out before every item was looked at; those are `NOT_RUN`.
+    pub out_of_time: bool,
+    /// Sum over the items.
+    pub cost: Cost,
+}
+
+/// Why a whole request was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refused {
+    /// A field that cannot be: text names item and field.
+    #[error("{field}: {problem}")]
+    Invalid {
+        /// For example `context.margin` or `items[3].body`.
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Something that is not in the scene.
+    #[error("no {what} {name:?} in the scene (revision {revision})")]
+    NotFound {
+        /// `robot`, `body`, `group`.
+        what: &'static str,
+        /// As it was asked for.
+        name: String,
+        /// Where it was looked for.
+        revision: Revision,
+    },
+}

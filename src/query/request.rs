@@ -1,0 +1,144 @@
+//! What may be asked. Plain data: a transport decodes into these structs once, and nothing below sees bytes again.
+
+use crate::geometry::{Pose, Shape, tolerance};
+use crate::scene::BodyId;
+
+/// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wants {
+    /// The bracket of the minimum, and the pair it belongs to; for states also the minima against itself and against
+    /// the scene.
+    pub distance: bool,
+    /// Points and normal of the deciding pair; includes `distance`.
+    pub witness: bool,
+    /// A tight bracket and witness in an overlap too; includes `distance`. Without it an overlap gets a valid loose
+    /// bracket with `upper <= 0`.
+    pub depth: bool,
+    /// Every pair that collides or is within the margin, as far as the limit on pairs allows.
+    pub pairs: bool,
+}
+
+impl Wants {
+    /// The verdict alone.
+    pub const VERDICT: Self = Self { distance: false, witness: false, depth: false, pairs: false };
+
+    /// Everything there is.
+    pub const ALL: Self = Self { distance: true, witness: true, depth: true, pairs: true };
+
+    /// The wants with what they include.
+    #[must_use]
+    pub fn closed(self) -> Self {
+        Self { distance: self.distance || self.witness || self.depth, ..self }
+    }
+}
+
+/// How narrow a bracket has to be: `upper - lower <= max(absolute, relative * min(|lower|, |upper|))`, or as narrow
+/// as rounding lets it be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Metres.
+    pub absolute: f64,
+    /// A factor.
+    pub relative: f64,
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self { absolute: 0.0, relative: tolerance::DEFAULT_RELATIVE_TOLERANCE }
+    }
+}
+
+/// Which pairs count.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Filter {
+    /// Look only at bodies of these groups; empty: at all.
+    pub groups: Vec<String>,
+    /// Leave these bodies out.
+    pub ignore: Vec<BodyId>,
+    /// Look at pairs that the scene's allowed-collision matrix allows to collide, too.
+    pub disregard_allowed_collisions: bool,
+    /// For a bare shape: the layers it is in, one bit each; `None`: all. For a body its own count.
+    pub layers: Option<u32>,
+    /// For a bare shape: the layers it collides with; `None`: all.
+    pub mask: Option<u32>,
+}
+
+/// What every query carries beside its items.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Context {
+    /// What to compute.
+    pub wants: Wants,
+    /// A pair nearer than this, but apart, is `MARGIN`; metres, not negative. A scene's entry for a pair replaces it.
+    pub margin: f64,
+    /// Pairs farther than this need no distance; metres. An answer without a pair within it has no bracket.
+    pub cut_off: Option<f64>,
+    /// How narrow brackets have to be where `distance` is wanted.
+    pub accuracy: Accuracy,
+    /// Which pairs count.
+    pub filter: Filter,
+    /// Pairs listed per item at most; more set the answer's `truncated`.
+    pub max_pairs: usize,
+}
+
+impl Default for Context {
+    fn default() -> Self {
+        Self {
+            wants: Wants::VERDICT,
+            margin: 0.0,
+            cut_off: None,
+            accuracy: Accuracy::default(),
+            filter: Filter::default(),
+            max_pairs: 100,
+        }
+    }
+}
+
+/// All items, or up to the first that is not free.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// A verdict for every item.
+    #[default]
+    All,
+    /// Items in order until one collides or cannot be decided; the rest are `NOT_RUN`. The answer says which it was.
+    StopAtFirst,
+}
+
+/// Is the robot free in these states?
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckStates {
+    /// The robot's name in the scene.
+    pub robot: String,
+    /// Joint positions, state after state, each in the order of the robot's joints; radians or metres.
+    pub positions: Vec<f64>,
+    /// All states or up to the first hit.
+    pub mode: Mode,
+    /// The rest.
+    pub context: Context,
+}
+
+/// What is held against the scene.
+#[derive(Clone, Debug)]
+pub enum Subject {
+    /// Every pair of bodies of the scene.
+    All,
+    /// One body against the others.
+    Body(BodyId),
+    /// A shape that is not in the scene, placed in the world, against all bodies.
+    Shape {
+        /// The shape.
+        shape: Shape,
+        /// Its frame in the world.
+        pose: Pose,
+    },
+}
+
+/// What touches (with `Collide`), or how far is the nearest (with `Distance`)?
+#[derive(Clone, Debug)]
+pub struct PairQuery {
+    /// Answered one by one, in order.
+    pub items: Vec<Subject>,
+    /// All items or up to the first hit.
+    pub mode: Mode,
+    /// The rest. `Distance` adds the want `distance`, `Collide` the want `pairs`.
+    pub context: Context,
+}
