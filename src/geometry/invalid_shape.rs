@@ -49,7 +49,9 @@ pub enum InvalidShape {
         vertices: usize,
     },
     /// A mesh declared solid whose surface is not closed: an edge without its opposite.
-    #[error("mesh is not closed, so it cannot be solid: edge {from} -> {to} has {opposite} opposite edges, 1 is needed")]
+    #[error(
+        "mesh is not closed, so it cannot be solid: edge {from} -> {to} has {opposite} opposite edges, 1 is needed"
+    )]
     NotClosed {
         /// First vertex of the edge (after equal vertices were merged).
         from: u32,

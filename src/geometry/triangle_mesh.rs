@@ -143,10 +143,7 @@ mod tests {
     use super::*;
 
     fn tetrahedron() -> (Vec<Vec3>, Vec<[u32; 3]>) {
-        (
-            vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()],
-            vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
-        )
+        (vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()], vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
     }
 
     #[test]

@@ -17,8 +17,8 @@ pub enum Verdict {
     Indeterminate(Indeterminacy),
     /// Not looked at: an earlier item stopped the batch, or the time ran out.
     NotRun,
-    /// The item cannot be asked; the message names the field.
-    InvalidInput(String),
+    /// The item cannot be asked; [`ItemAnswer::problem`] names the field.
+    InvalidInput,
 }
 
 /// Why a bracket straddles the decision.
@@ -100,6 +100,8 @@ pub struct ItemAnswer {
     pub nearest_scene: Option<PairAnswer>,
     /// Where wanted: the pairs that collide, cannot be decided or are within the margin, in order of their sides.
     pub pairs: Vec<PairAnswer>,
+    /// Of an invalid item: which field, and what is wrong with it.
+    pub problem: Option<String>,
     /// More pairs were there than the limit lets through.
     pub truncated: bool,
     /// What it cost.
@@ -116,6 +118,7 @@ impl ItemAnswer {
             nearest_self: None,
             nearest_scene: None,
             pairs: Vec::new(),
+            problem: None,
             truncated: false,
             cost: Cost::default(),
         }
