@@ -1,6 +1,8 @@
 //! `clearance`: how far apart, touching or not, which pair, where, and since when is that true.
 
 pub mod geometry;
+pub mod limits;
 pub mod narrow_phase;
 pub mod query;
 pub mod scene;
+pub mod transports;

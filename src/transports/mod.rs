@@ -1,0 +1,4 @@
+//! The doors: each turns what arrives into a call of [`crate::service`] and its answer into what leaves.
+
+#[cfg(feature = "grpc")]
+pub mod wire;
