@@ -1,1 +1,3 @@
+//! The command line; `clearance --help` lists the commands.
+
 fn main() {}
