@@ -39,6 +39,20 @@ impl ConvexHull {
         &self.points
     }
 
+    /// The point farthest along `direction` (of any length); among equals the first. Metres, the hull's frame.
+    #[must_use]
+    pub fn support(&self, direction: Vec3) -> Vec3 {
+        let mut best = 0;
+        let mut value = f64::NEG_INFINITY;
+        for (i, p) in self.points.iter().enumerate() {
+            let v = direction.dot(p);
+            if v > value {
+                (best, value) = (i, v);
+            }
+        }
+        self.points[best]
+    }
+
     /// Bounds in the hull's frame.
     #[must_use]
     pub fn bounds(&self) -> Aabb {

@@ -1,5 +1,6 @@
 //! Where a body is: translation and rotation of one frame in another.
 
+use super::tolerance::LARGEST_LENGTH;
 use super::{Mat3, Vec3};
 
 /// A rotation as a quaternion with named components.
@@ -100,6 +101,9 @@ pub enum InvalidPose {
     /// A component of the translation is NaN or infinite.
     #[error("translation has a component that is not finite")]
     TranslationNotFinite,
+    /// A component of the translation is larger than any length may be.
+    #[error("translation has a component beyond {LARGEST_LENGTH:e} m")]
+    TranslationTooLarge,
     /// A component of the quaternion is NaN or infinite.
     #[error("rotation has a component that is not finite")]
     RotationNotFinite,
@@ -127,10 +131,13 @@ impl Pose {
     /// Checks the numbers of a pose.
     ///
     /// # Errors
-    /// Numbers that are not finite, or the zero quaternion.
+    /// Numbers that are not finite or out of reach, or the zero quaternion.
     pub fn new(translation: Vec3, rotation: Quaternion) -> Result<Self, InvalidPose> {
         if !translation.iter().all(|c| c.is_finite()) {
             return Err(InvalidPose::TranslationNotFinite);
+        }
+        if translation.amax() > LARGEST_LENGTH {
+            return Err(InvalidPose::TranslationTooLarge);
         }
         let q = rotation;
         if ![q.w, q.x, q.y, q.z].iter().all(|c| c.is_finite()) {

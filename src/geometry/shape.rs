@@ -226,23 +226,7 @@ impl Shape {
     /// A factor that is negative or not finite, or lengths beyond the largest accepted.
     pub fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
         length("scale", factor)?;
-        let f = factor;
-        let shape = match &self.core {
-            Core::Point => Self::point(),
-            Core::Cuboid { half_extents } => Self::cuboid(half_extents * f)?,
-            Core::AxialSegment { half_length } => Self::capsule(0.0, half_length * f)?,
-            Core::Cylinder { radius, half_length } => Self::cylinder(radius * f, half_length * f)?,
-            Core::Cone { radius, half_length } => Self::cone(radius * f, half_length * f)?,
-            Core::Ellipsoid { radii } => Self::ellipsoid(radii * f)?,
-            Core::Convex(hull) => Self::hull(Arc::new(hull.scaled(f)?)),
-            Core::Triangle([a, b, c]) => Self::triangle(a * f, b * f, c * f)?,
-            Core::Segment([a, b]) => Self::segment(a * f, b * f)?,
-            Core::HalfSpace { normal, offset } => Self::half_space(*normal, offset * f)?,
-            Core::Plane { normal, offset } => Self::plane(*normal, offset * f)?,
-            Core::Mesh(mesh) => Self::mesh(Arc::new(mesh.scaled(Vec3::repeat(f))?)),
-            Core::Compound(compound) => Self::compound(Arc::new(compound.scaled(f)?)),
-        };
-        shape.swept(self.swept_radius * f)
+        Self::new(self.core.scaled(factor)?, 0.0).swept(self.swept_radius * factor)
     }
 
     /// What the shape is without its swept radius.
@@ -298,6 +282,30 @@ impl Shape {
 }
 
 impl Core {
+    /// The core with every length multiplied by a finite, non-negative `factor`.
+    ///
+    /// # Errors
+    /// Lengths beyond the largest accepted.
+    pub fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
+        let f = factor;
+        let shape = match self {
+            Self::Point => Shape::point(),
+            Self::Cuboid { half_extents } => Shape::cuboid(half_extents * f)?,
+            Self::AxialSegment { half_length } => Shape::capsule(0.0, half_length * f)?,
+            Self::Cylinder { radius, half_length } => Shape::cylinder(radius * f, half_length * f)?,
+            Self::Cone { radius, half_length } => Shape::cone(radius * f, half_length * f)?,
+            Self::Ellipsoid { radii } => Shape::ellipsoid(radii * f)?,
+            Self::Convex(hull) => Shape::hull(Arc::new(hull.scaled(f)?)),
+            Self::Triangle([a, b, c]) => Shape::triangle(a * f, b * f, c * f)?,
+            Self::Segment([a, b]) => Shape::segment(a * f, b * f)?,
+            Self::HalfSpace { normal, offset } => Shape::half_space(*normal, offset * f)?,
+            Self::Plane { normal, offset } => Shape::plane(*normal, offset * f)?,
+            Self::Mesh(mesh) => Shape::mesh(Arc::new(mesh.scaled(Vec3::repeat(f))?)),
+            Self::Compound(compound) => Shape::compound(Arc::new(compound.scaled(f)?)),
+        };
+        Ok(shape.core)
+    }
+
     /// Bounds of the core in its own frame; none when unbounded.
     #[must_use]
     pub fn bounds(&self) -> Option<Aabb> {

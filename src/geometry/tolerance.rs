@@ -9,9 +9,9 @@ pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// Smaller would let a bracket miss the truth; larger only widens it.
 pub const SUPPORT_ERROR_ULPS: f64 = 96.0;
 
-/// Largest coordinate or size of a shape, metres. The solver scales pairs to unit extent, so that squares do not
-/// overflow there; the trees take products of three lengths, which 1e100 still leaves finite.
-pub const LARGEST_LENGTH: f64 = 1e102;
+/// Largest coordinate or size of a shape or position, metres. Squares of such lengths, and sums of a dozen of them, are
+/// still finite; anything larger would turn bounds into infinities.
+pub const LARGEST_LENGTH: f64 = 1e152;
 
 /// A pair is rescaled by a power of two when its extent leaves this range, metres. Inside it, products of
 /// six lengths neither overflow nor underflow; outside, volumes would.

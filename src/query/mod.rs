@@ -4,4 +4,4 @@ mod answer;
 mod request;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
-pub use request::{Accuracy, CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};

@@ -1,6 +1,7 @@
 //! What may be asked. Plain data: a transport decodes into these structs once, and nothing below sees bytes again.
 
-use crate::geometry::{Pose, Shape, tolerance};
+use crate::geometry::{Pose, Shape};
+use crate::narrow_phase::Accuracy;
 use crate::scene::BodyId;
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
@@ -29,22 +30,6 @@ impl Wants {
     #[must_use]
     pub fn closed(self) -> Self {
         Self { distance: self.distance || self.witness || self.depth, ..self }
-    }
-}
-
-/// How narrow a bracket has to be: `upper - lower <= max(absolute, relative * min(|lower|, |upper|))`, or as narrow
-/// as rounding lets it be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// Metres.
-    pub absolute: f64,
-    /// A factor.
-    pub relative: f64,
-}
-
-impl Default for Accuracy {
-    fn default() -> Self {
-        Self { absolute: 0.0, relative: tolerance::DEFAULT_RELATIVE_TOLERANCE }
     }
 }
 

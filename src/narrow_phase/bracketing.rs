@@ -1,0 +1,40 @@
+//! From bounds on two cores to a bracket on the shapes, and whether that is enough.
+
+use crate::geometry::tolerance::UNIT_ROUNDOFF;
+
+use super::goal::{Depth, Goal};
+use super::outcome::Bracket;
+
+/// What is asked of a pair, with what has been taken off its cores.
+pub(super) struct Target<'a> {
+    pub goal: &'a Goal<'a>,
+    /// Sum of the swept radii: the shapes' signed distance is that of the cores less this. Metres.
+    pub radii: f64,
+    /// The cores are the shapes' times this power of two, so that no product over- or underflows.
+    pub scale: f64,
+}
+
+impl Target<'_> {
+    /// Bracket of the shapes, metres, from bounds on the (scaled) cores. Rounded outwards: the sum of the radii, the
+    /// difference and the product round once each; four units in the last place cover them.
+    pub fn bracket(&self, lower: f64, upper: f64) -> Bracket {
+        let slack = |bound: f64| 4.0 * UNIT_ROUNDOFF * (bound.abs() + self.radii);
+        let (lower, upper) = (lower / self.scale, upper / self.scale);
+        Bracket { lower: lower - self.radii - slack(lower), upper: upper - self.radii + slack(upper) }
+    }
+
+    pub fn is_decided(&self, bracket: &Bracket) -> bool {
+        self.goal.is_decided(bracket)
+    }
+
+    pub fn is_met(&self, bracket: &Bracket) -> bool {
+        match self.goal.depth {
+            Depth::Verdict => false,
+            Depth::Distance | Depth::Penetration => self.goal.accuracy.is_met(bracket),
+        }
+    }
+
+    pub fn must_stop(&self) -> bool {
+        (self.goal.stop)()
+    }
+}

@@ -1,0 +1,120 @@
+//! Two convex, bounded shapes: GJK on the cores, EPA where the cores meet or nearly do, swept radii taken off last.
+
+use std::borrow::Cow;
+
+use super::bracketing::Target;
+use super::epa::{Epa, epa};
+use super::gjk::{End, Gjk, gjk};
+use super::goal::{Depth, Goal};
+use super::minkowski::{Difference, Vertex};
+use super::outcome::{Cost, Separation, Termination};
+use super::polytope::Polytope;
+use super::support::radius;
+use crate::geometry::tolerance::UNSCALED_EXTENT;
+use crate::geometry::{Core, Placement, Vec3};
+
+/// A convex, bounded core in its place, with the radius of the ball swept over it.
+#[derive(Clone, Copy)]
+pub(super) struct Convex<'a> {
+    pub core: &'a Core,
+    pub swept_radius: f64,
+    pub at: &'a Placement,
+}
+
+/// What is known about A and B when the goal is reached. `hint`: a direction from B to A, world frame, to start from.
+pub(super) fn separation(a: Convex, b: Convex, hint: Option<Vec3>, goal: &Goal) -> Separation {
+    let b_in_a = Placement::relative(a.at, b.at);
+    let extent = radius(a.core) + radius(b.core) + b_in_a.translation.norm();
+    let scale = scale_of(extent);
+    let (core_a, core_b) = (scaled(a.core, scale), scaled(b.core, scale));
+    let b_in_a = Placement { translation: b_in_a.translation * scale, ..b_in_a };
+    let difference = Difference::new(&core_a, &core_b, b_in_a);
+    let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale };
+    let mut cost = Cost { pairs: 1, ..Cost::default() };
+    let hint = hint.map(|h| a.at.direction_into(h));
+    let found = solve(&difference, &target, hint, &mut cost);
+    place(&found, a, &target, &difference, cost)
+}
+
+fn solve(difference: &Difference, target: &Target, hint: Option<Vec3>, cost: &mut Cost) -> Epa {
+    let found = gjk(difference, target, hint, cost);
+    let stopped = |termination| known(&found, termination);
+    // Two errors, one from each end of the bracket, are as near as they can come.
+    let at_floor = found.upper - found.lower <= 4.0 * difference.error;
+    match found.end {
+        End::Converged => stopped(Termination::Converged),
+        End::Decided => stopped(Termination::Decided),
+        End::Stalled if at_floor => stopped(Termination::RoundingFloor),
+        End::Stalled => epa(difference, found.feature.vertices(), stopped(Termination::IterationLimit), target, cost),
+        End::Limit => stopped(Termination::IterationLimit),
+        End::Enclosed(vertices) => {
+            let overlap = Epa { upper: inner_ball(vertices, difference.error), ..stopped(Termination::Decided) };
+            let measured = target.goal.depth == Depth::Penetration;
+            if !measured && target.is_decided(&target.bracket(overlap.lower, overlap.upper)) {
+                return overlap;
+            }
+            epa(difference, &vertices, overlap, target, cost)
+        }
+    }
+}
+
+fn known(found: &Gjk, termination: Termination) -> Epa {
+    Epa {
+        lower: found.lower,
+        upper: found.upper,
+        direction: found.direction,
+        nearest: found.feature.nearest(),
+        termination,
+    }
+}
+
+/// Upper bound of the signed distance when the origin is strictly inside a tetrahedron: minus the radius of the ball
+/// around it that no face cuts, or the error when that is larger.
+fn inner_ball(vertices: [Vertex; 4], error: f64) -> f64 {
+    let nearest = Polytope::tetrahedron(vertices).and_then(|mut p| p.nearest_face().map(|f| p.face(f).offset));
+    error - nearest.unwrap_or(0.0).max(0.0)
+}
+
+/// From the scaled frame of A to the frame of both placements, swept radii included.
+fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost: Cost) -> Separation {
+    let bracket = target.bracket(found.lower, found.upper);
+    // The witness pair measures best what has converged. What has not is measured by its best direction: on round
+    // shapes a support value is exact where a polytope is still coarse.
+    let of_cores = match found.termination {
+        Termination::Converged | Termination::RoundingFloor => found.direction.dot(&found.nearest.w),
+        Termination::Decided | Termination::IterationLimit | Termination::ClosedForm => found.lower + difference.error,
+    };
+    let signed_distance = (of_cores / target.scale - target.radii).clamp(bracket.lower, bracket.upper);
+    // The direction leads from the origin to C = A - B, the normal from A to B.
+    let normal = a.at.direction(-found.direction);
+    let point_on_a = a.at.point(found.nearest.on_a / target.scale) + normal * a.swept_radius;
+    let point_on_b = point_on_a + normal * signed_distance;
+    Separation {
+        bracket,
+        signed_distance,
+        normal,
+        point_on_a,
+        point_on_b,
+        termination: found.termination,
+        subshape_a: 0,
+        subshape_b: 0,
+        cost,
+    }
+}
+
+/// 1 for ordinary extents, else the power of two that brings the extent near 1. Powers of two scale without rounding.
+fn scale_of(extent: f64) -> f64 {
+    let (least, greatest) = UNSCALED_EXTENT;
+    if extent == 0.0 || (least..=greatest).contains(&extent) {
+        return 1.0;
+    }
+    let exponent = -libm::log2(extent).floor();
+    libm::exp2(exponent.clamp(-1000.0, 1000.0))
+}
+
+fn scaled(core: &Core, scale: f64) -> Cow<'_, Core> {
+    if scale == 1.0 {
+        return Cow::Borrowed(core);
+    }
+    Cow::Owned(core.scaled(scale).expect("a core no larger than the extent is in reach when that is scaled to 1"))
+}

@@ -1,0 +1,192 @@
+//! Depth of an overlap, and the direction out of it: the expanding polytope algorithm on the Minkowski difference C.
+//!
+//! Depth is the distance from the origin to the boundary of C. A polytope inside C is grown, by the support point
+//! beyond its face nearest the origin, until that face is on the boundary. Source: van den Bergen 2001. Departures:
+//! - It need not start around the origin. Offsets of faces are signed, so it also sharpens the answer for cores that
+//!   touch or miss by less than GJK can tell: for any unit n, the signed distance is at least `min over C of n . c`.
+//! - It stops on a bracket. From below: that bound, for every direction asked about. From above, when the origin is
+//!   strictly inside the surface (exact test): the ball around it that no face cuts, for the surface is in C's hull.
+//! - A difference without volume is recognised, and separated along its thinnest direction.
+
+use super::bracketing::Target;
+use super::minkowski::{Difference, Vertex};
+use super::outcome::{Cost, Termination};
+use super::polytope::Polytope;
+use super::simplex::triangle;
+use super::support::unit;
+use crate::geometry::Vec3;
+
+/// Rounds at most. Pairs with one deepest direction need fewer than 150. Bodies of revolution about one axis have a
+/// whole circle of them, and each round narrows the bracket at one place of it.
+const MAX_ITERATIONS: u32 = 500;
+
+/// In these rounds the faces at the newest vertex go first: on a circle of deepest directions that follows one of them
+/// to the end, so that the estimate is good though the bracket stays wide.
+const LOCAL_ITERATIONS: std::ops::Range<u32> = 250..350;
+
+/// What EPA found out. Metres, frame of the difference.
+pub(super) struct Epa {
+    /// The signed distance of the cores is at least this.
+    pub lower: f64,
+    /// And at most this.
+    pub upper: f64,
+    /// The best unit direction from the origin to where C would be if the cores were apart: `lower` is its bound.
+    pub direction: Vec3,
+    /// Where the boundary of C is nearest the origin, with the points of A and B it is the difference of.
+    pub nearest: Vertex,
+    /// How it stopped.
+    pub termination: Termination,
+}
+
+/// Narrows `known` (valid bounds that GJK found, with the nearest point it found), starting from some vertices of C.
+pub(super) fn epa(difference: &Difference, seeds: &[Vertex], known: Epa, target: &Target, cost: &mut Cost) -> Epa {
+    let mut pool = seeds.to_vec();
+    let mut best = known;
+    match starting_polytope(difference, &mut pool, cost) {
+        Start::Flat(across) => {
+            for direction in [across, -across] {
+                cost.supports += 1;
+                raise_lower(&mut best, direction, direction.dot(&difference.lowest(direction).w), difference);
+            }
+            let met = target.is_met(&target.bracket(best.lower, best.upper));
+            best.termination = if met { Termination::Converged } else { Termination::RoundingFloor };
+            best
+        }
+        Start::Solid(mut polytope) => {
+            for vertex in pool {
+                if let Some(face) = polytope.visible_face(&vertex) {
+                    polytope.insert(vertex, face);
+                }
+            }
+            expand(difference, polytope, best, target, cost)
+        }
+    }
+}
+
+fn expand(difference: &Difference, mut polytope: Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
+    let error = difference.error;
+    best.termination = Termination::IterationLimit;
+    // Of faces that cannot be pushed out further.
+    let mut least_final_offset = f64::INFINITY;
+    // Once inside, the origin stays inside: the surface only grows.
+    let mut encloses = polytope.encloses_origin();
+    let mut follow = true;
+    for iteration in 0..MAX_ITERATIONS {
+        let local = (follow && LOCAL_ITERATIONS.contains(&iteration)).then(|| polytope.nearest_newest_face()).flatten();
+        let Some(face) = local.or_else(|| polytope.nearest_face()) else {
+            best.termination = Termination::RoundingFloor;
+            break;
+        };
+        let offset = polytope.face(face).offset;
+        if let Some(ball) = (encloses && local.is_none()).then(|| offset.min(least_final_offset))
+            && ball > error
+        {
+            best.upper = best.upper.min(error - ball);
+        }
+        let outward = polytope.face(face).normal;
+        let vertex = difference.lowest(-outward);
+        cost.supports += 1;
+        cost.epa_iterations += 1;
+        if raise_lower(&mut best, -outward, -outward.dot(&vertex.w), difference) {
+            let [a, b, c] = polytope.corners(face);
+            best.nearest = triangle(a, b, c).nearest();
+            if !encloses {
+                best.upper = best.upper.min(best.nearest.w.norm() + error);
+            }
+        }
+        let bracket = target.bracket(best.lower, best.upper);
+        if target.is_met(&bracket) || target.is_decided(&bracket) {
+            best.termination = if target.is_met(&bracket) { Termination::Converged } else { Termination::Decided };
+            break;
+        }
+        if target.must_stop() {
+            break;
+        }
+        let gain = outward.dot(&vertex.w) - offset;
+        if gain <= 0.25 * error || !polytope.is_outside(face, &vertex) {
+            if local.is_some() {
+                follow = false;
+                continue;
+            }
+            least_final_offset = least_final_offset.min(offset);
+            // The face that holds the ball back is on the boundary of C, so nothing wider can be proved.
+            if -offset - 2.0 * error <= best.lower {
+                best.termination = Termination::RoundingFloor;
+                break;
+            }
+            continue;
+        }
+        polytope.insert(vertex, face);
+        encloses = encloses || polytope.encloses_origin();
+    }
+    best
+}
+
+/// Takes note of `value`, the least of `direction . c` over C, and says whether it is the best so far.
+fn raise_lower(best: &mut Epa, direction: Vec3, value: f64, difference: &Difference) -> bool {
+    let better = value - difference.error > best.lower;
+    if better {
+        best.lower = value - difference.error;
+        best.direction = direction;
+    }
+    better
+}
+
+enum Start {
+    Solid(Polytope),
+    /// No volume; a unit direction across which it is thin.
+    Flat(Vec3),
+}
+
+/// A tetrahedron with volume from `pool`, to which support points are added as far as they are needed.
+fn starting_polytope(difference: &Difference, pool: &mut Vec<Vertex>, cost: &mut Cost) -> Start {
+    // Thinner than the error of its own vertices is without volume.
+    let thin = 4.0 * difference.error;
+    let mut ask = |directions: &[Vec3], pool: &mut Vec<Vertex>| {
+        for d in directions {
+            pool.push(difference.lowest(*d));
+            pool.push(difference.lowest(-d));
+            cost.supports += 2;
+        }
+    };
+    ask(&[Vec3::x(), Vec3::y(), Vec3::z()], pool);
+    let a = pool[0];
+    let (b, length) = farthest(pool, |v| (v.w - a.w).norm());
+    if length <= thin {
+        return Start::Flat(Vec3::z());
+    }
+    let along = (b.w - a.w) / length;
+    let across = unit(along.cross(&Vec3::ith(along.iamin(), 1.0))).unwrap_or_else(Vec3::x);
+    let from_line = |v: &Vertex| along.cross(&(v.w - a.w)).norm();
+    if farthest(pool, from_line).1 <= 0.01 * length {
+        ask(&[across, along.cross(&across)], pool);
+    }
+    let (c, width) = farthest(pool, from_line);
+    if width <= thin {
+        return Start::Flat(across);
+    }
+    let Some(normal) = unit((b.w - a.w).cross(&(c.w - a.w))) else {
+        return Start::Flat(across);
+    };
+    let height = |v: &Vertex| normal.dot(&(v.w - a.w)).abs();
+    if farthest(pool, height).1 <= 0.01 * width {
+        ask(&[normal], pool);
+    }
+    let (d, thickness) = farthest(pool, height);
+    if thickness <= thin {
+        return Start::Flat(normal);
+    }
+    Polytope::tetrahedron([a, b, c, d]).map_or(Start::Flat(normal), Start::Solid)
+}
+
+/// The vertex of greatest `measure`, and the measure; the first among equals.
+fn farthest(pool: &[Vertex], measure: impl Fn(&Vertex) -> f64) -> (Vertex, f64) {
+    let mut best = (pool[0], measure(&pool[0]));
+    for v in &pool[1..] {
+        let m = measure(v);
+        if m > best.1 {
+            best = (*v, m);
+        }
+    }
+    best
+}

@@ -1,0 +1,51 @@
+//! The Minkowski difference C = A - B of two cores: the set GJK and EPA walk on.
+//!
+//! A and B meet where C holds the origin, and the signed distance of A and B is that of the origin to C. Everything
+//! is in A's frame, so that nothing depends on where the pair is in the world.
+
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::{Core, Placement, Vec3};
+
+use super::support::{radius, support};
+
+/// A vertex of the difference with the points it came from. Metres, frame of A.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Vertex {
+    /// `on_a - on_b`.
+    pub w: Vec3,
+    /// The point of A.
+    pub on_a: Vec3,
+    /// The point of B.
+    pub on_b: Vec3,
+}
+
+/// The difference of two convex, bounded cores.
+pub(super) struct Difference<'a> {
+    a: &'a Core,
+    b: &'a Core,
+    b_in_a: Placement,
+    /// E = 96 u S, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the
+    /// true difference is within this of the value at the vertex found, for a unit d. Metres. Derived in
+    /// `docs/derivations/bracket.md`.
+    pub error: f64,
+}
+
+impl<'a> Difference<'a> {
+    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement) -> Self {
+        let extent = radius(a) + radius(b) + b_in_a.translation.norm();
+        Self { a, b, b_in_a, error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent }
+    }
+
+    /// The vertex where `direction . c` is least.
+    pub fn lowest(&self, direction: Vec3) -> Vertex {
+        let on_a = support(self.a, -direction);
+        let on_b = self.b_in_a.point(support(self.b, self.b_in_a.direction_into(direction)));
+        Vertex { w: on_a - on_b, on_a, on_b }
+    }
+
+    /// A first guess of the direction from the origin to the difference: between the centres of the bounds.
+    pub fn centers(&self) -> Vec3 {
+        let center = |core: &Core| core.bounds().map_or_else(Vec3::zeros, |bounds| bounds.center());
+        center(self.a) - self.b_in_a.point(center(self.b))
+    }
+}

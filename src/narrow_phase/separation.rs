@@ -1,0 +1,43 @@
+//! The door of the narrow phase: any shape against any shape.
+
+use super::convex::{self, Convex};
+use super::goal::Goal;
+use super::outcome::Separation;
+use super::solid::with_containment;
+use super::support::is_convex;
+use super::union::{self, pieces};
+use crate::geometry::{Placement, Shape};
+
+/// Two shapes without bounds, such as two half-spaces: their distance is not asked for.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a {a} and a {b} are both unbounded, so they have no signed distance")]
+pub struct UnboundedPair {
+    /// Kind of the first shape.
+    pub a: &'static str,
+    /// Kind of the second.
+    pub b: &'static str,
+}
+
+/// How far shape `a` is from shape `b`, both placed in one frame, as far as `goal` needs to know.
+///
+/// Metres. The bracket is valid whatever stopped the work. Of shapes made of several pieces it is that of the least
+/// pair of pieces: in an overlap the deepest pair, not a translation that frees the whole.
+///
+/// # Errors
+/// [`UnboundedPair`] when neither shape has bounds.
+pub fn separation(
+    a: &Shape,
+    b: &Shape,
+    at_a: &Placement,
+    at_b: &Placement,
+    goal: &Goal,
+) -> Result<Separation, UnboundedPair> {
+    if is_convex(a.core()) && is_convex(b.core()) {
+        let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a };
+        let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b };
+        return Ok(convex::separation(one, other, None, goal));
+    }
+    let (pieces_a, pieces_b) = (pieces(a, at_a), pieces(b, at_b));
+    let surfaces = union::separation(&pieces_a, &pieces_b, goal).ok_or(UnboundedPair { a: a.kind(), b: b.kind() })?;
+    Ok(with_containment(surfaces, &pieces_a, &pieces_b))
+}

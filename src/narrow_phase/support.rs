@@ -1,0 +1,136 @@
+//! Support functions: the point of a core that lies farthest in a direction.
+
+use crate::geometry::{Core, Vec3};
+
+/// A point of the convex, bounded core where `direction . x` is greatest, in the core's frame. Among equals the first.
+///
+/// The direction need not be of unit length; a zero one gets any point. For round cores the value `direction . x` is
+/// within a few units in the last place of the true maximum, times the size of the core.
+///
+/// # Panics
+/// For cores that are not convex and bounded: callers have taken those apart ([`is_convex`]).
+pub(super) fn support(core: &Core, direction: Vec3) -> Vec3 {
+    let d = direction;
+    match core {
+        Core::Point => Vec3::zeros(),
+        Core::Cuboid { half_extents } => half_extents.zip_map(&d, f64::copysign),
+        Core::AxialSegment { half_length } => Vec3::new(0.0, 0.0, half_length.copysign(d.z)),
+        Core::Cylinder { radius, half_length } => rim(*radius, half_length.copysign(d.z), d),
+        Core::Cone { radius, half_length } => {
+            // Apex or rim: the apex wins where its value, h d_z, is not below the rim's, r |d_xy| - h d_z.
+            let base = rim(*radius, -half_length, d);
+            let apex = Vec3::new(0.0, 0.0, *half_length);
+            if d.dot(&apex) >= d.dot(&base) { apex } else { base }
+        }
+        Core::Ellipsoid { radii } => {
+            // The image of a ball under A = diag(radii): A (A d) / |A d|.
+            let stretched = radii.component_mul(&d);
+            match unit(stretched) {
+                Some(u) => radii.component_mul(&u),
+                None => Vec3::zeros(), // Flat across the direction: the centre is as far as any point.
+            }
+        }
+        Core::Convex(hull) => hull.support(d),
+        Core::Triangle(corners) => farthest(corners, d),
+        Core::Segment(ends) => farthest(ends, d),
+        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => {
+            unreachable!("only convex, bounded cores have a support function")
+        }
+    }
+}
+
+/// Whether the core has a support function.
+pub(super) fn is_convex(core: &Core) -> bool {
+    match core {
+        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => false,
+        Core::Point
+        | Core::Cuboid { .. }
+        | Core::AxialSegment { .. }
+        | Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::Convex(_)
+        | Core::Triangle(_)
+        | Core::Segment(_) => true,
+    }
+}
+
+/// Largest distance of a point of the core from its origin; an upper bound within rounding, metres.
+pub(super) fn radius(core: &Core) -> f64 {
+    let farthest = |points: &[Vec3]| points.iter().map(Vec3::norm).fold(0.0, f64::max);
+    match core {
+        Core::Point => 0.0,
+        Core::Cuboid { half_extents } => half_extents.norm(),
+        Core::AxialSegment { half_length } => *half_length,
+        Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => radius.hypot(*half_length),
+        Core::Ellipsoid { radii } => radii.amax(),
+        Core::Convex(hull) => hull.radius(),
+        Core::Triangle(corners) => farthest(corners),
+        Core::Segment(ends) => farthest(ends),
+        Core::HalfSpace { .. } | Core::Plane { .. } => 0.0,
+        Core::Mesh(mesh) => mesh.bounds().min.abs().sup(&mesh.bounds().max.abs()).norm(),
+        Core::Compound(compound) => compound.bounds().min.abs().sup(&compound.bounds().max.abs()).norm(),
+    }
+}
+
+/// Point of the disc of that radius at that height, farthest along `d`.
+fn rim(radius: f64, height: f64, d: Vec3) -> Vec3 {
+    match unit(Vec3::new(d.x, d.y, 0.0)) {
+        Some(u) => Vec3::new(radius * u.x, radius * u.y, height),
+        None => Vec3::new(0.0, 0.0, height), // Straight along the axis: the centre is as far as the rim.
+    }
+}
+
+/// `v / |v|`, also where squares would underflow; none for zero.
+pub(super) fn unit(v: Vec3) -> Option<Vec3> {
+    let square = v.norm_squared();
+    if square > 1e-280 && square < 1e280 {
+        return Some(v / square.sqrt());
+    }
+    let largest = v.amax();
+    (largest > 0.0).then(|| (v / largest).normalize())
+}
+
+fn farthest(points: &[Vec3], d: Vec3) -> Vec3 {
+    let mut best = points[0];
+    let mut value = d.dot(&best);
+    for p in &points[1..] {
+        let v = d.dot(p);
+        if v > value {
+            (best, value) = (*p, v);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Shape;
+
+    /// The support value is not below the value at any sampled point of the shape: checked against closed forms.
+    #[test]
+    fn round_supports_match_their_closed_forms() {
+        let directions = (0..500).map(|i| {
+            let t = f64::from(i);
+            Vec3::new(libm::sin(t), libm::cos(1.7 * t), libm::sin(0.3 * t + 1.0))
+        });
+        for d in directions {
+            let value = |shape: &Shape| d.dot(&support(shape.core(), d));
+            let across = d.x.hypot(d.y);
+            let cylinder = Shape::cylinder(0.3, 0.7).unwrap();
+            assert!((value(&cylinder) - (0.3 * across + 0.7 * d.z.abs())).abs() < 1e-15);
+            let cone = Shape::cone(0.3, 0.7).unwrap();
+            assert!((value(&cone) - (0.7 * d.z).max(0.3 * across - 0.7 * d.z)).abs() < 1e-15);
+            let ellipsoid = Shape::ellipsoid(Vec3::new(0.1, 0.5, 2.0)).unwrap();
+            assert!((value(&ellipsoid) - Vec3::new(0.1 * d.x, 0.5 * d.y, 2.0 * d.z).norm()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn directions_whose_squares_underflow_are_still_directions() {
+        let d = Vec3::new(3e-200, 4e-200, 0.0);
+        let p = support(Shape::cylinder(5.0, 1.0).unwrap().core(), d);
+        assert!((p - Vec3::new(3.0, 4.0, 1.0)).norm() < 1e-14);
+    }
+}

@@ -1,0 +1,59 @@
+//! A convex, bounded shape against a half-space or a plane: one or two support values.
+
+use super::convex::Convex;
+use super::outcome::{Bracket, Cost, Separation, Termination};
+use super::support::{radius, support, unit};
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::{Placement, Vec3};
+
+/// `{ x : normal . x <= offset }`, or its boundary alone when `thin`; swept by a ball, in its place.
+#[derive(Clone, Copy)]
+pub(super) struct Unbounded<'a> {
+    pub normal: Vec3,
+    pub offset: f64,
+    pub thin: bool,
+    pub swept_radius: f64,
+    pub at: &'a Placement,
+}
+
+/// How far A is from `b`. Signed distance: n . a - offset/|normal| at the lowest point a of A, less the swept radii;
+/// from a plane, on whichever side A sticks out less.
+pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
+    let length = b.normal.norm();
+    let length = if length.is_normal() && length < 1e150 { length } else { b.normal.amax() };
+    // Twice, so that normals of extreme length come out as unit vectors too.
+    let normal = unit(b.normal / length).unwrap_or_else(Vec3::z);
+    let offset = b.offset / b.normal.dot(&normal);
+    let b_in_a = Placement::relative(a.at, b.at);
+    let up = b_in_a.direction(normal);
+    let height = |p: Vec3| up.dot(&(p - b_in_a.translation)) - offset;
+    let lowest = support(a.core, -up);
+    let mut cost = Cost { pairs: 1, supports: 1, ..Cost::default() };
+
+    let (mut point, mut side, mut of_cores) = (lowest, 1.0, height(lowest));
+    if b.thin {
+        let highest = support(a.core, up);
+        cost.supports += 1;
+        if -height(highest) > of_cores {
+            (point, side, of_cores) = (highest, -1.0, -height(highest));
+        }
+    }
+    let extent = radius(a.core) + b_in_a.translation.norm() + offset.abs();
+    let radii = a.swept_radius + b.swept_radius;
+    let error = UNIT_ROUNDOFF * (SUPPORT_ERROR_ULPS * extent + 4.0 * radii);
+    let signed_distance = of_cores - radii;
+    // From A towards B: down to the half-space.
+    let towards_b = a.at.direction(up) * -side;
+    let point_on_a = a.at.point(point) + towards_b * a.swept_radius;
+    Separation {
+        bracket: Bracket { lower: signed_distance - error, upper: signed_distance + error },
+        signed_distance,
+        normal: towards_b,
+        point_on_a,
+        point_on_b: point_on_a + towards_b * signed_distance,
+        termination: Termination::ClosedForm,
+        subshape_a: 0,
+        subshape_b: 0,
+        cost,
+    }
+}
