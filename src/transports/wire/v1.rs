@@ -1,3 +1,9 @@
-//! Generated from `proto/clearance/v1`; the comments there say what everything means.
+//! The messages of `proto/clearance/v1` as compiled by `build.rs`; the comments in those files say what everything
+//! means.
+
+#![allow(missing_docs, clippy::all, unused_qualifications)]
 
 tonic::include_proto!("clearance.v1");
+
+/// Descriptors of all messages and services, for the reflection service.
+pub const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/clearance.descriptors"));
