@@ -19,6 +19,8 @@ pub(super) struct Convex<'a> {
     pub core: &'a Core,
     pub swept_radius: f64,
     pub at: &'a Placement,
+    /// How far a point may be from where `at` says, by roundings that went into `at`; metres.
+    pub placement_error: f64,
 }
 
 /// What is known about A and B when the goal is reached. `hint`: a direction from B to A, world frame, to start from.
@@ -28,7 +30,8 @@ pub(super) fn separation(a: Convex, b: Convex, hint: Option<Vec3>, goal: &Goal) 
     let scale = scale_of(extent);
     let (core_a, core_b) = (scaled(a.core, scale), scaled(b.core, scale));
     let b_in_a = Placement { translation: b_in_a.translation * scale, ..b_in_a };
-    let difference = Difference::new(&core_a, &core_b, b_in_a);
+    let placement_error = (a.placement_error + b.placement_error) * scale;
+    let difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
     let hint = hint.map(|h| a.at.direction_into(h));

@@ -24,16 +24,17 @@ pub(super) struct Difference<'a> {
     a: &'a Core,
     b: &'a Core,
     b_in_a: Placement,
-    /// E = 96 u S, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the
+    /// E = 112 u S plus what the placement of the cores is off by, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the
     /// true difference is within this of the value at the vertex found, for a unit d. Metres. Derived in
     /// `docs/derivations/bracket.md`.
     pub error: f64,
 }
 
 impl<'a> Difference<'a> {
-    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement) -> Self {
+    /// `placement_error`: how far a point of B may be from its stored place in A's frame by roundings before, metres.
+    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, placement_error: f64) -> Self {
         let extent = radius(a) + radius(b) + b_in_a.translation.norm();
-        Self { a, b, b_in_a, error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent }
+        Self { a, b, b_in_a, error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error }
     }
 
     /// The vertex where `direction . c` is least.

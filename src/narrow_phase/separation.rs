@@ -6,7 +6,7 @@ use super::outcome::Separation;
 use super::solid::with_containment;
 use super::support::is_convex;
 use super::union::{self, pieces};
-use crate::geometry::{Placement, Shape};
+use crate::geometry::{Mat3, Placement, Shape, Vec3};
 
 /// Two shapes without bounds, such as two half-spaces: their distance is not asked for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -33,11 +33,15 @@ pub fn separation(
     goal: &Goal,
 ) -> Result<Separation, UnboundedPair> {
     if is_convex(a.core()) && is_convex(b.core()) {
-        let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a };
-        let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b };
+        let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
+        let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
         return Ok(convex::separation(one, other, None, goal));
     }
-    let (pieces_a, pieces_b) = (pieces(a, at_a), pieces(b, at_b));
+    let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
+    let (pieces_a, pieces_b) = (pieces(a, &own_frame), pieces(b, &Placement::relative(at_a, at_b)));
     let surfaces = union::separation(&pieces_a, &pieces_b, goal).ok_or(UnboundedPair { a: a.kind(), b: b.kind() })?;
-    Ok(with_containment(surfaces, &pieces_a, &pieces_b))
+    let found = with_containment(surfaces, &pieces_a, &pieces_b);
+    let point_on_a = at_a.point(found.point_on_a);
+    let normal = at_a.direction(found.normal);
+    Ok(Separation { normal, point_on_a, point_on_b: point_on_a + normal * found.signed_distance, ..found })
 }

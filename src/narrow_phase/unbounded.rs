@@ -14,6 +14,8 @@ pub(super) struct Unbounded<'a> {
     pub thin: bool,
     pub swept_radius: f64,
     pub at: &'a Placement,
+    /// How far a point may be from where `at` says, metres.
+    pub placement_error: f64,
 }
 
 /// How far A is from `b`. Signed distance: n . a - offset/|normal| at the lowest point a of A, less the swept radii;
@@ -40,7 +42,7 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
     }
     let extent = radius(a.core) + b_in_a.translation.norm() + offset.abs();
     let radii = a.swept_radius + b.swept_radius;
-    let error = UNIT_ROUNDOFF * (SUPPORT_ERROR_ULPS * extent + 4.0 * radii);
+    let error = UNIT_ROUNDOFF * (SUPPORT_ERROR_ULPS * extent + 4.0 * radii) + a.placement_error + b.placement_error;
     let signed_distance = of_cores - radii;
     // From A towards B: down to the half-space.
     let towards_b = a.at.direction(up) * -side;

@@ -1,6 +1,7 @@
 //! Shapes made of many convex pieces: meshes, compounds, and whatever stands against them.
 //!
-//! The signed distance is the minimum over pairs of pieces. Pairs of tree nodes are opened in the order of the distance
+//! The signed distance is the minimum over pairs of pieces. Everything is in the first shape's frame, so that a pair far
+//! from the origin is as accurate as one near it. Pairs of tree nodes are opened in the order of the distance
 //! of their boxes, until no box is near enough to matter: what is left unopened is proved farther than the answer, so
 //! the bracket of the minimum is the minimum of the brackets.
 
@@ -10,15 +11,20 @@ use std::collections::BinaryHeap;
 use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::{Bracket, Cost, Separation, Termination};
+use super::support::radius;
 use super::unbounded::{self, Unbounded};
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::{Aabb, Core, Placement, Shape, TriangleMesh, Vec3};
 
 /// Something that has a place and is convex, unbounded, or a mesh: what is left when a compound is taken apart.
+#[derive(Clone, Copy)]
 pub(super) struct Piece<'a> {
     pub shape: &'a Shape,
     /// Swept radius of the piece and of the compound around it, metres.
     pub swept_radius: f64,
     pub at: Placement,
+    /// How far a point may be from where `at` says, by the composing of the compound's pose and the part's; metres.
+    pub placement_error: f64,
     /// Its place in the compound.
     pub part: u32,
 }
@@ -26,11 +32,14 @@ pub(super) struct Piece<'a> {
 /// The pieces of a placed shape, in order.
 pub(super) fn pieces<'a>(shape: &'a Shape, at: &Placement) -> Vec<Piece<'a>> {
     let Core::Compound(compound) = shape.core() else {
-        return vec![Piece { shape, swept_radius: shape.swept_radius(), at: *at, part: 0 }];
+        return vec![Piece { shape, swept_radius: shape.swept_radius(), at: *at, placement_error: 0.0, part: 0 }];
     };
     let piece = |(part, p): (u32, &'a crate::geometry::Part)| {
         let inner = p.pose.placement();
+        // Composing rounds no more than relating two poses does, which the error of a support value covers once.
+        let reach = radius(p.shape.core()) + inner.translation.norm() + at.translation.norm();
         Piece {
+            placement_error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * reach,
             shape: &p.shape,
             swept_radius: p.shape.swept_radius() + shape.swept_radius(),
             at: Placement { rotation: at.rotation * inner.rotation, translation: at.point(inner.translation) },
@@ -81,7 +90,14 @@ fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
         | Core::Mesh(_)
         | Core::Compound(_) => return None,
     };
-    Some(Unbounded { normal, offset, thin, swept_radius: piece.swept_radius, at: &piece.at })
+    Some(Unbounded {
+        normal,
+        offset,
+        thin,
+        swept_radius: piece.swept_radius,
+        at: &piece.at,
+        placement_error: piece.placement_error,
+    })
 }
 
 /// Two pieces that are not meshes: the only place where kinds of shapes meet. Order is swapped here, once.
@@ -95,7 +111,12 @@ pub(super) fn simple_pair(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separatio
 }
 
 fn whole<'a>(piece: &'a Piece) -> Convex<'a> {
-    Convex { core: piece.shape.core(), swept_radius: piece.swept_radius, at: &piece.at }
+    Convex {
+        core: piece.shape.core(),
+        swept_radius: piece.swept_radius,
+        at: &piece.at,
+        placement_error: piece.placement_error,
+    }
 }
 
 /// The same answer with the sides exchanged.
@@ -256,10 +277,10 @@ fn walk(a: &Piece, b: &Piece, least: &mut Least) {
 fn leaf_pair(a: &Side, na: usize, b: &Side, nb: usize, least: &mut Least) {
     for &i in a.items(na) {
         let (shape_a, number_a) = a.item(i);
-        let item_a = Piece { shape: &shape_a, swept_radius: a.piece.swept_radius, at: a.piece.at, part: number_a };
+        let item_a = Piece { shape: &shape_a, part: number_a, ..*a.piece };
         for &j in b.items(nb) {
             let (shape_b, number_b) = b.item(j);
-            let item_b = Piece { shape: &shape_b, swept_radius: b.piece.swept_radius, at: b.piece.at, part: number_b };
+            let item_b = Piece { shape: &shape_b, part: number_b, ..*b.piece };
             let found = simple_pair(&item_a, &item_b, &least.goal());
             least.take(found, number_a, number_b);
         }

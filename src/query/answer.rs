@@ -56,6 +56,18 @@ pub enum Side {
     },
 }
 
+impl Side {
+    /// The same side, down to one of its triangles or parts.
+    #[must_use]
+    pub fn with_subshape(&self, subshape: u32) -> Self {
+        match *self {
+            Self::Link { link, shape, .. } => Self::Link { link, shape, subshape },
+            Self::Query { .. } => Self::Query { subshape },
+            Self::Body { id, .. } => Self::Body { id, subshape },
+        }
+    }
+}
+
 /// Points and normal of a pair, world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Witness {
