@@ -1,6 +1,7 @@
 //! `clearance`: how far apart, touching or not, which pair, where, and since when is that true.
 
 pub mod broad_phase;
+pub mod cli;
 pub mod geometry;
 pub mod limits;
 pub mod narrow_phase;

@@ -1,3 +1,7 @@
 //! The command line; `clearance --help` lists the commands.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    clearance::cli::run()
+}

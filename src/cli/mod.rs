@@ -1,0 +1,10 @@
+//! The commands: flags and files in, lines out.
+
+mod case;
+mod command;
+mod exit_code;
+mod json_field;
+mod pairs;
+mod words;
+
+pub use command::run;

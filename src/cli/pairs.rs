@@ -1,0 +1,201 @@
+//! `clearance pairs`: how far apart are two shapes, line by line? The library itself, no daemon.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Write};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::case::{self, Case};
+use super::words;
+use crate::geometry::Vec3;
+use crate::narrow_phase::{self, Accuracy, Bracket, Goal, Separation, Termination};
+use crate::query::{Indeterminacy, Verdict};
+
+/// Flags of `clearance pairs`.
+#[derive(clap::Args, Clone, Debug)]
+pub struct Pairs {
+    /// JSON lines, one case each; standard input when absent.
+    pub file: Option<PathBuf>,
+    /// Skip this many cases at the head of the input.
+    #[arg(default_value_t = 0)]
+    pub start: usize,
+    /// Width of the bracket at which the work on a pair ends, relative to the distance.
+    #[arg(long, value_name = "REL", value_parser = not_negative)]
+    pub tolerance: Option<f64>,
+    /// Microseconds after which the work on a pair ends with the bracket reached so far.
+    #[arg(long, value_name = "N")]
+    pub max_time_us: Option<u64>,
+    /// Accepted like everywhere; the output is JSON lines with or without it.
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if number >= 0.0 { Ok(number) } else { Err("must not be negative".to_owned()) }
+}
+
+/// Answers every case of the input in order, each with one flushed line.
+///
+/// # Errors
+/// The input cannot be read or the output not be written. A case that makes no sense is no error, but a line that says so.
+pub fn run(pairs: &Pairs, output: &mut dyn Write) -> io::Result<()> {
+    match &pairs.file {
+        Some(path) => {
+            let file = File::open(path).map_err(|e| io::Error::new(e.kind(), format!("{}: {e}", path.display())))?;
+            answer_all(pairs, &mut BufReader::new(file), output)
+        }
+        None => answer_all(pairs, &mut io::stdin().lock(), output),
+    }
+}
+
+fn answer_all(pairs: &Pairs, input: &mut dyn BufRead, output: &mut dyn Write) -> io::Result<()> {
+    let mut line = Vec::new();
+    let mut case_number = 0;
+    while input.read_until(b'\n', &mut line)? > 0 {
+        let text = line.trim_ascii();
+        if !text.is_empty() {
+            if case_number >= pairs.start {
+                serde_json::to_writer(&mut *output, &answer(text, pairs))?;
+                output.write_all(b"\n")?;
+                output.flush()?;
+            }
+            case_number += 1;
+        }
+        line.clear();
+    }
+    Ok(())
+}
+
+/// One line of output.
+#[derive(Serialize)]
+struct Line {
+    id: Value,
+    #[serde(flatten)]
+    outcome: Outcome,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "status", rename_all = "lowercase")]
+enum Outcome {
+    Ok(Measured),
+    Invalid { message: String },
+}
+
+#[derive(Serialize)]
+struct Measured {
+    verdict: &'static str,
+    signed_distance: f64,
+    lower: f64,
+    upper: f64,
+    normal: Option<[f64; 3]>,
+    witness: Option<[[f64; 3]; 2]>,
+    termination: &'static str,
+    iterations: u64,
+    micros: f64,
+}
+
+fn answer(line: &[u8], pairs: &Pairs) -> Line {
+    let (id, case) = case::read_line(line);
+    let outcome = match case.and_then(|case| measure(&case, pairs)) {
+        Ok(measured) => Outcome::Ok(measured),
+        Err(message) => Outcome::Invalid { message },
+    };
+    Line { id, outcome }
+}
+
+fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, String> {
+    let started = Instant::now();
+    let budget = pairs.max_time_us.map(Duration::from_micros);
+    let out_of_time = || budget.is_some_and(|budget| started.elapsed() >= budget);
+    let whole = Goal::penetration();
+    let relative = pairs.tolerance.unwrap_or(whole.accuracy.relative);
+    let goal = Goal { accuracy: Accuracy { relative, ..whole.accuracy }, stop: &out_of_time, ..whole };
+    let (at_a, at_b) = (case.pose_a.placement(), case.pose_b.placement());
+    let separation =
+        narrow_phase::separation(&case.a, &case.b, &at_a, &at_b, &goal).map_err(|error| error.to_string())?;
+    let micros = started.elapsed().as_secs_f64() * 1e6;
+    Ok(written(&separation, micros))
+}
+
+fn written(separation: &Separation, micros: f64) -> Measured {
+    let Separation { bracket, signed_distance, normal, point_on_a, point_on_b, termination, cost, .. } = *separation;
+    Measured {
+        verdict: words::verdict(verdict(bracket, termination)),
+        signed_distance,
+        lower: bracket.lower,
+        upper: bracket.upper,
+        normal: finite(normal),
+        witness: finite(point_on_a).zip(finite(point_on_b)).map(|(a, b)| [a, b]),
+        termination: words::termination(termination),
+        iterations: cost.gjk_iterations + cost.epa_iterations,
+        micros,
+    }
+}
+
+/// Without a margin there are three verdicts.
+fn verdict(bracket: Bracket, termination: Termination) -> Verdict {
+    if bracket.upper <= 0.0 {
+        Verdict::Collision
+    } else if bracket.lower > 0.0 {
+        Verdict::Free
+    } else if termination == Termination::RoundingFloor {
+        Verdict::Indeterminate(Indeterminacy::Rounding)
+    } else {
+        Verdict::Indeterminate(Indeterminacy::IterationLimit)
+    }
+}
+
+fn finite(v: Vec3) -> Option<[f64; 3]> {
+    v.iter().all(|c| c.is_finite()).then(|| v.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BALLS: &str = r#"{"id": "balls", "a": {"type": "sphere", "params": {"radius": 1}}, "pose_a": {"t": [0, 0, 0], "q": [1, 0, 0, 0]}, "b": {"type": "point"}, "pose_b": {"t": [0, 0, 3], "q": [1, 0, 0, 0]}}"#;
+
+    fn lines(input: &str, start: usize) -> Vec<Value> {
+        let pairs = Pairs { file: None, start, tolerance: None, max_time_us: None, json: false };
+        let mut output = Vec::new();
+        answer_all(&pairs, &mut input.as_bytes(), &mut output).unwrap();
+        String::from_utf8(output).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+
+    #[test]
+    fn a_case_is_answered_with_every_field() {
+        let answers = lines(BALLS, 0);
+        let answer = answers[0].as_object().unwrap();
+        let keys: Vec<&str> = answer.keys().map(String::as_str).collect();
+        let expected = "id iterations lower micros normal signed_distance status termination upper verdict witness";
+        assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
+        assert_eq!(answer["id"], "balls");
+        assert_eq!(answer["status"], "ok");
+        assert_eq!(answer["verdict"], "FREE");
+        assert!((answer["signed_distance"].as_f64().unwrap() - 2.0).abs() < 1e-14);
+        assert!((answer["witness"][0][2].as_f64().unwrap() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_bad_line_is_an_answer_and_not_the_end() {
+        let unbounded = r#"{"type": "plane", "params": {"normal": [0, 0, 1], "offset": 0}}"#;
+        let planes = BALLS
+            .replace(r#"{"type": "sphere", "params": {"radius": 1}}"#, unbounded)
+            .replace(r#"{"type": "point"}"#, unbounded);
+        let answers = lines(&format!("{{\"id\": 1}}\n\nnonsense\n{planes}\n{BALLS}"), 0);
+        assert_eq!(answers.len(), 4);
+        assert_eq!(answers[0], serde_json::json!({"id": 1, "status": "invalid", "message": "a: is missing"}));
+        assert_eq!(answers[1]["id"], Value::Null);
+        assert!(answers[2]["message"].as_str().unwrap().contains("unbounded"), "{}", answers[2]);
+        assert_eq!(answers[3]["status"], "ok");
+    }
+
+    #[test]
+    fn start_skips_cases_not_lines() {
+        assert_eq!(lines(&format!("\n{{\"id\": 1}}\n\n{BALLS}\n"), 1)[0]["id"], "balls");
+    }
+}
