@@ -62,7 +62,9 @@ pub(super) fn radius(core: &Core) -> f64 {
         Core::Point => 0.0,
         Core::Cuboid { half_extents } => half_extents.norm(),
         Core::AxialSegment { half_length } => *half_length,
-        Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => radius.hypot(*half_length),
+        Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => {
+            libm::hypot(*radius, *half_length)
+        }
         Core::Ellipsoid { radii } => radii.amax(),
         Core::Convex(hull) => hull.radius(),
         Core::Triangle(corners) => farthest(corners),
@@ -117,7 +119,7 @@ mod tests {
         });
         for d in directions {
             let value = |shape: &Shape| d.dot(&support(shape.core(), d));
-            let across = d.x.hypot(d.y);
+            let across = libm::hypot(d.x, d.y);
             let cylinder = Shape::cylinder(0.3, 0.7).unwrap();
             assert!((value(&cylinder) - (0.3 * across + 0.7 * d.z.abs())).abs() < 1e-15);
             let cone = Shape::cone(0.3, 0.7).unwrap();
