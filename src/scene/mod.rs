@@ -1,5 +1,32 @@
-//! What is in the world: commands that change it, and immutable snapshots that queries read.
+//! What is in the world: edits that change it, and immutable snapshots that queries read.
+//!
+//! A [`Scene`] takes lists of [`Edit`]s, makes all of a list or nothing, and keeps its last [`Snapshot`]s. A snapshot
+//! shares with the one before whatever did not change, so that an edit costs little however large the scene is.
 
+mod body;
+mod body_changes;
+mod change;
+mod edit;
+mod groups;
 mod id;
+mod id_map;
+mod pair_changes;
+mod pair_table;
+mod party;
+mod refusal;
+#[expect(clippy::module_inception, reason = "the scene itself is one of the things in the module on scenes")]
+mod scene;
+mod snapshot;
+mod validate;
 
+#[cfg(test)]
+mod tests;
+
+pub use body::Body;
+pub use edit::{BodyRef, Edit, NewBody};
 pub use id::{BodyId, Epoch, Revision};
+pub use party::{Member, Party};
+pub use refusal::{NotKept, Reason, Refusal};
+pub use scene::{Applied, Scene};
+pub use snapshot::Snapshot;
+pub use validate::SnapshotDefect;

@@ -75,6 +75,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("rayon", &["service"]),
     ("robust", &[GEOMETRY, "narrow_phase"]),
     ("roxmltree", &[GEOMETRY, "robot"]),
+    ("rpds", &["scene"]),
     ("serde", &["limits", "app", "cli"]),
     ("serde_json", &["app", "cli"]),
     ("sha2", &["service"]),

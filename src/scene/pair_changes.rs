@@ -1,0 +1,92 @@
+//! How entries for pairs come and go, in the allowed-collision matrix and in the table of margins.
+
+use super::body_changes::{check_distance, check_group_name};
+use super::change::Fault;
+use super::party::PartyKey;
+use super::{Party, Reason, Snapshot};
+use crate::limits::{LimitExceeded, Limits};
+
+impl Snapshot {
+    pub(super) fn set_allowed_collision(
+        &mut self,
+        a: &Party,
+        b: &Party,
+        allowed: Option<bool>,
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        let (a, b) = self.pair_of_keys(a, b, limits)?;
+        let existed = self.allowed.get(a, b).is_some();
+        self.count_entry(existed, allowed.is_some(), (a, b), limits)?;
+        self.allowed.set(a, b, allowed);
+        Ok(())
+    }
+
+    pub(super) fn set_pair_margin(
+        &mut self,
+        a: &Party,
+        b: &Party,
+        margin: Option<f64>,
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        let (a, b) = self.pair_of_keys(a, b, limits)?;
+        if let Some(margin) = margin {
+            check_distance(margin, "margin")?;
+        }
+        let existed = self.margins.get(a, b).is_some();
+        self.count_entry(existed, margin.is_some(), (a, b), limits)?;
+        self.margins.set(a, b, margin);
+        Ok(())
+    }
+
+    /// Takes back all entries that name a party which leaves the scene.
+    pub(super) fn forget_entries_of(&mut self, party: PartyKey) {
+        let mut others = self.allowed.forget(party);
+        others.extend(self.margins.forget(party));
+        others.into_iter().filter(|other| other.is_many()).for_each(|other| self.groups.drop_use(other));
+    }
+
+    fn pair_of_keys(&mut self, a: &Party, b: &Party, limits: &Limits) -> Result<(PartyKey, PartyKey), Fault> {
+        let (a, b) = (self.key_of(a, "a", limits)?, self.key_of(b, "b", limits)?);
+        if a == b && a.is_one() {
+            return Err(Reason::PairWithItself.of("b"));
+        }
+        Ok((a, b))
+    }
+
+    fn key_of(&mut self, party: &Party, field: &'static str, limits: &Limits) -> Result<PartyKey, Fault> {
+        match party {
+            Party::Body(body) => Ok(PartyKey::body(self.find(body, field)?.id)),
+            Party::Group(name) => {
+                check_group_name(name, field, limits)?;
+                Ok(self.groups.named(name).0)
+            }
+            Party::Everything => Ok(PartyKey::EVERYTHING),
+        }
+    }
+
+    /// Counts an entry that comes into being or goes.
+    fn count_entry(
+        &mut self,
+        existed: bool,
+        exists: bool,
+        (a, b): (PartyKey, PartyKey),
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        if exists && !existed {
+            let entries = self.allowed.len() + self.margins.len() + 1;
+            LimitExceeded::check("max_pair_entries", entries, limits.max_pair_entries)
+                .map_err(|limit| Reason::Limit(limit).of("a"))?;
+        }
+        for party in [a, b] {
+            // A use of a group begins before the old one ends, so that a name taken up for nothing is forgotten again.
+            self.groups.add_use(party);
+            if existed || !exists {
+                self.groups.drop_use(party);
+            }
+            if existed && !exists {
+                self.groups.drop_use(party);
+            }
+        }
+        Ok(())
+    }
+}

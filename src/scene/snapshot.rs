@@ -1,0 +1,136 @@
+//! A scene as it was at one revision: what queries read.
+
+use std::sync::Arc;
+
+use rpds::HashTrieMapSync;
+
+use super::groups::Groups;
+use super::id_map::IdMap;
+use super::pair_table::PairTable;
+use super::{Body, BodyId, Epoch, Member, Revision};
+use crate::broad_phase::DynamicTree;
+
+/// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    pub(super) epoch: Epoch,
+    pub(super) revision: Revision,
+    pub(super) bodies: IdMap<Arc<Body>>,
+    // Never iterated: its order is not the same twice.
+    pub(super) names: HashTrieMapSync<Arc<str>, BodyId>,
+    /// The id of the next body.
+    pub(super) next_body: BodyId,
+    pub(super) groups: Groups,
+    /// Enabled bodies with bounds, by their ids.
+    pub(super) tree: DynamicTree,
+    /// Enabled bodies without bounds, sorted.
+    pub(super) unbounded: Arc<Vec<BodyId>>,
+    pub(super) allowed: PairTable<bool>,
+    pub(super) margins: PairTable<f64>,
+    pub(super) largest_margin: f64,
+}
+
+impl Snapshot {
+    /// The scene at the beginning of an epoch: empty, revision zero. The first body gets the id 1.
+    pub(super) fn empty(epoch: Epoch) -> Self {
+        Self {
+            epoch,
+            revision: Revision(0),
+            bodies: IdMap::new(),
+            names: HashTrieMapSync::new_sync(),
+            next_body: BodyId(1),
+            groups: Groups::new(),
+            tree: DynamicTree::new(),
+            unbounded: Arc::new(Vec::new()),
+            // Looking at a pair is more cautious than allowing its collision.
+            allowed: PairTable::new(|a, b| a && b),
+            margins: PairTable::new(f64::max),
+            largest_margin: 0.0,
+        }
+    }
+
+    /// Which life of the scene this is of.
+    #[must_use]
+    pub fn epoch(&self) -> Epoch {
+        self.epoch
+    }
+
+    /// How many lists of edits the scene had accepted.
+    #[must_use]
+    pub fn revision(&self) -> Revision {
+        self.revision
+    }
+
+    /// All bodies in the order of their ids.
+    pub fn bodies(&self) -> impl Iterator<Item = &Arc<Body>> {
+        self.bodies.values()
+    }
+
+    /// Number of bodies.
+    #[must_use]
+    pub fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// A body by its id.
+    #[must_use]
+    pub fn body(&self, id: BodyId) -> Option<&Arc<Body>> {
+        self.bodies.get(id.0)
+    }
+
+    /// A body by its name.
+    #[must_use]
+    pub fn body_named(&self, name: &str) -> Option<&Arc<Body>> {
+        self.body(*self.names.get(name)?)
+    }
+
+    /// The enabled bodies that have bounds; a payload is the number of a [`BodyId`], a box is [`Body::bounds`].
+    #[must_use]
+    pub fn tree(&self) -> &DynamicTree {
+        &self.tree
+    }
+
+    /// The enabled bodies that have no bounds (half-spaces and planes), in the order of their ids.
+    #[must_use]
+    pub fn unbounded(&self) -> &[BodyId] {
+        &self.unbounded
+    }
+
+    /// Whether a body is in the group, or an entry for pairs speaks of it.
+    #[must_use]
+    pub fn has_group(&self, name: &str) -> bool {
+        self.groups.key(name).is_some()
+    }
+
+    /// Whether two different bodies are held against each other: both take part, each is in a layer that the other
+    /// collides with, and the allowed-collision matrix does not allow their collision.
+    #[must_use]
+    pub fn admits(&self, a: &Body, b: &Body) -> bool {
+        b.enabled && a.meets(b.layers, b.mask) && !self.is_allowed(a.member(), b.member())
+    }
+
+    /// Whether the allowed-collision matrix allows the pair's collision, so that it is not looked at. A pair that no
+    /// entry speaks of is looked at.
+    ///
+    /// The most specific entry decides: one that names two single bodies or links; then one of them and a group or
+    /// robot; then one of them and everything; then two groups or robots; then a group or robot and everything; then
+    /// everything and everything. Among entries of the same rank one that says to look at the pair wins.
+    #[must_use]
+    pub fn is_allowed(&self, a: Member<'_>, b: Member<'_>) -> bool {
+        self.allowed.decide(a, b).unwrap_or(false)
+    }
+
+    /// The margin for a pair, metres, where an entry speaks of it; it takes the place of the question's. The most
+    /// specific entry decides, as in [`Snapshot::is_allowed`]; among entries of the same rank the largest.
+    #[must_use]
+    pub fn margin(&self, a: Member<'_>, b: Member<'_>) -> Option<f64> {
+        self.margins.decide(a, b)
+    }
+
+    /// The largest margin of any entry, metres; zero without entries. A search for pairs within their margins has to
+    /// reach at least so far.
+    #[must_use]
+    pub fn largest_margin(&self) -> f64 {
+        self.largest_margin
+    }
+}
