@@ -1,0 +1,27 @@
+//! The commands that answer from the library, run as a user runs them, on data with known truth.
+
+mod hard_cases;
+
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// A file of `tests/data`.
+fn data(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// Runs `clearance` with nothing on its standard input.
+fn clearance(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_clearance")).args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn json_lines(text: &[u8]) -> Vec<Value> {
+    let text = std::str::from_utf8(text).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"))).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("not a number: {value}"))
+}
