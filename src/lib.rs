@@ -6,5 +6,6 @@ pub mod geometry;
 pub mod limits;
 pub mod narrow_phase;
 pub mod query;
+pub mod robot;
 pub mod scene;
 pub mod transports;

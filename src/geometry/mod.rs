@@ -7,6 +7,7 @@ mod aabb;
 mod compound;
 mod convex_hull;
 mod invalid_shape;
+pub mod mesh_file;
 mod mesh_tree;
 mod pose;
 mod shape;

@@ -65,8 +65,8 @@ pub const KERNEL: &[&str] = &[GEOMETRY, "limits", "narrow_phase", "broad_phase",
 /// Who may name which crate of `Cargo.toml`. A new dependency needs a line here before it builds into the house.
 pub const CRATES: &[(&str, &[&str])] = &[
     ("arc-swap", &["service"]),
+    ("base64", &[GEOMETRY]),
     ("clap", &["app", "cli", "main"]),
-    ("gltf", &[GEOMETRY, "robot"]),
     ("indicatif", &["cli"]),
     ("libm", KERNEL),
     ("nalgebra", KERNEL),
@@ -76,12 +76,10 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("robust", &[GEOMETRY, "narrow_phase"]),
     ("roxmltree", &[GEOMETRY, "robot"]),
     ("rpds", &["scene"]),
-    ("serde", &["limits", "app", "cli"]),
-    ("serde_json", &["app", "cli"]),
+    ("serde", &[GEOMETRY, "limits", "app", "cli"]),
+    ("serde_json", &[GEOMETRY, "app", "cli"]),
     ("sha2", &["service"]),
-    ("stl_io", &[GEOMETRY, "robot"]),
     ("thiserror", &["*"]),
-    ("tobj", &[GEOMETRY, "robot"]),
     ("tokio", &["service", "transports", "app", "cli", "main"]),
     ("tokio-stream", &["transports"]),
     ("toml", &["app"]),
@@ -91,7 +89,6 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("tonic-reflection", &["transports"]),
     ("tracing", &["service", "transports", "app", "cli", "main"]),
     ("tracing-subscriber", &["app", "cli", "main"]),
-    ("urdf-rs", &["robot"]),
 ];
 
 /// What is wrong with the imports of `source`, one line each.

@@ -1,0 +1,3 @@
+//! Robots and mesh files, from text and bytes to poses and shapes.
+
+mod ur5;
