@@ -12,9 +12,14 @@ use super::{Aabb, InvalidShape, Vec3};
 #[derive(Clone, Debug)]
 pub struct ConvexHull {
     points: Vec<Vec3>,
+    /// The points again, coordinate by coordinate, filled up with copies of the first to whole blocks.
+    blocks: Vec<[[f64; LANES]; 3]>,
     bounds: Aabb,
     radius: f64,
 }
+
+/// Points that are looked at together: as many as an AVX-512 register holds, two or four of the narrower ones.
+const LANES: usize = 8;
 
 impl ConvexHull {
     /// # Errors
@@ -30,7 +35,11 @@ impl ConvexHull {
         let points = extreme_points(&distinct).unwrap_or(distinct);
         let bounds = Aabb::around(points.iter().copied());
         let radius = points.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt();
-        Ok(Self { points, bounds, radius })
+        let block = |chunk: &[Vec3]| {
+            [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
+        };
+        let blocks = points.chunks(LANES).map(block).collect();
+        Ok(Self { points, blocks, bounds, radius })
     }
 
     /// The points that span the hull, in the order given, without duplicates.
@@ -42,15 +51,27 @@ impl ConvexHull {
     /// The point farthest along `direction` (of any length); among equals the first. Metres, the hull's frame.
     #[must_use]
     pub fn support(&self, direction: Vec3) -> Vec3 {
-        let mut best = 0;
-        let mut value = f64::NEG_INFINITY;
-        for (i, p) in self.points.iter().enumerate() {
-            let v = direction.dot(p);
-            if v > value {
-                (best, value) = (i, v);
+        // First the greatest value, lane by lane and without branches; then the first point that has it, found by
+        // evaluating the same expression again.
+        let dot = |block: &[[f64; LANES]; 3], lane: usize| {
+            block[0][lane] * direction.x + block[1][lane] * direction.y + block[2][lane] * direction.z
+        };
+        let mut greatest = [f64::NEG_INFINITY; LANES];
+        for block in &self.blocks {
+            for lane in 0..LANES {
+                let value = dot(block, lane);
+                greatest[lane] = if value > greatest[lane] { value } else { greatest[lane] };
             }
         }
-        self.points[best]
+        let greatest = greatest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        for (b, block) in self.blocks.iter().enumerate() {
+            for lane in 0..LANES {
+                if dot(block, lane) == greatest {
+                    return self.points.get(b * LANES + lane).copied().unwrap_or(self.points[0]);
+                }
+            }
+        }
+        self.points[0] // The direction has a component that is not a number.
     }
 
     /// Bounds in the hull's frame.

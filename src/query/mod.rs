@@ -1,7 +1,13 @@
 //! Questions to a snapshot of a scene, and their answers. Pure: no threads, clocks, files or network.
 
 mod answer;
+mod batch;
+mod context;
+mod pairs;
 mod request;
+mod search;
+mod verdict;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use batch::{Part, Prepared};
 pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};

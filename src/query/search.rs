@@ -191,10 +191,8 @@ impl Found {
 
 /// The nearer of two minima over different pairs, with the bracket of both together.
 fn nearer(one: PairAnswer, two: PairAnswer) -> PairAnswer {
-    let bracket = Bracket {
-        lower: one.bracket.lower.min(two.bracket.lower),
-        upper: one.bracket.upper.min(two.bracket.upper),
-    };
+    let bracket =
+        Bracket { lower: one.bracket.lower.min(two.bracket.lower), upper: one.bracket.upper.min(two.bracket.upper) };
     let order = one.signed_distance.total_cmp(&two.signed_distance);
     let first = if order.then_with(|| (&one.a, &one.b).cmp(&(&two.a, &two.b))).is_le() { one } else { two };
     PairAnswer { signed_distance: first.signed_distance.clamp(bracket.lower, bracket.upper), bracket, ..first }

@@ -1,0 +1,168 @@
+//! Bodies and bare shapes against the scene: `Collide` and `Distance`.
+
+use super::answer::{ItemAnswer, PairAnswer, Refused, Side, Verdict};
+use super::context::Sieve;
+use super::request::{PairQuery, Subject, Wants};
+use super::search::{Found, Party, Plan, Search};
+use crate::geometry::{Aabb, Pose, Shape};
+use crate::scene::{Body, BodyId, Snapshot};
+
+/// A checked request.
+pub(super) struct Pairs<'a> {
+    snapshot: &'a Snapshot,
+    request: &'a PairQuery,
+    wants: Wants,
+    sieve: Sieve<'a>,
+}
+
+impl<'a> Pairs<'a> {
+    pub fn collide(snapshot: &'a Snapshot, request: &'a PairQuery) -> Result<Self, Refused> {
+        Self::new(snapshot, request, Wants { pairs: true, ..request.context.wants })
+    }
+
+    pub fn distance(snapshot: &'a Snapshot, request: &'a PairQuery) -> Result<Self, Refused> {
+        Self::new(snapshot, request, Wants { distance: true, ..request.context.wants })
+    }
+
+    fn new(snapshot: &'a Snapshot, request: &'a PairQuery, wants: Wants) -> Result<Self, Refused> {
+        let sieve = Sieve::new(snapshot, &request.context)?;
+        Ok(Self { snapshot, request, wants, sieve })
+    }
+
+    pub fn len(&self) -> usize {
+        self.request.items.len()
+    }
+
+    pub fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> ItemAnswer {
+        let plan = Plan::new(&self.request.context, self.wants, self.snapshot.largest_margin(), stop);
+        let mut search = Search::new(&plan);
+        match &self.request.items[item] {
+            Subject::All => self.everything(&mut search),
+            Subject::Body(id) => match self.snapshot.body(*id) {
+                Some(body) => self.body(body, &mut search),
+                None => {
+                    return ItemAnswer::invalid(format!("items[{item}].body: no body {id} in the scene"));
+                }
+            },
+            Subject::Shape { shape, pose } => {
+                if let (None, Some(id)) = (shape.bounds(), self.first_unbounded()) {
+                    let kind = shape.kind();
+                    return ItemAnswer::invalid(format!(
+                        "items[{item}].shape: a {kind} is unbounded, and so is body {id}: they have no signed distance"
+                    ));
+                }
+                self.shape(shape, pose, &mut search);
+            }
+        }
+        finish(search.finish(), self.request.context.max_pairs)
+    }
+
+    fn first_unbounded(&self) -> Option<BodyId> {
+        let passes = |id: &&BodyId| self.snapshot.body(**id).is_some_and(|body| self.sieve.passes(body));
+        self.snapshot.unbounded().iter().find(passes).copied()
+    }
+
+    /// Every body against those with higher ids, so that each pair comes once.
+    fn everything(&self, search: &mut Search) {
+        for body in self.snapshot.bodies().filter(|b| self.sieve.passes(b)) {
+            if search.is_settled() {
+                return;
+            }
+            self.against_bodies(search, &party(body), body.bounds, &mut |other| {
+                (other.id > body.id && self.admits(body, other)).then(|| self.margin(body, other))
+            });
+        }
+    }
+
+    fn body(&self, body: &Body, search: &mut Search) {
+        if !body.enabled {
+            return;
+        }
+        self.against_bodies(search, &party(body), body.bounds, &mut |other| {
+            (other.id != body.id && self.admits(body, other)).then(|| self.margin(body, other))
+        });
+    }
+
+    fn shape(&self, shape: &Shape, pose: &Pose, search: &mut Search) {
+        let at = pose.placement();
+        let query = Party { side: Side::Query { subshape: 0 }, shape, at: &at };
+        let filter = &self.request.context.filter;
+        let (layers, mask) = (filter.layers.unwrap_or(u32::MAX), filter.mask.unwrap_or(u32::MAX));
+        let margin = self.request.context.margin;
+        self.against_bodies(search, &query, shape.placed_bounds(&at), &mut |other| {
+            other.meets(layers, mask).then_some(margin)
+        });
+    }
+
+    /// Offers the bodies that `margin` gives a margin, as far as the search reaches.
+    fn against_bodies(
+        &self,
+        search: &mut Search,
+        one: &Party,
+        bounds: Option<Aabb>,
+        margin: &mut dyn FnMut(&Body) -> Option<f64>,
+    ) {
+        let snapshot = self.snapshot;
+        let mut offer = |search: &mut Search, id: BodyId| {
+            let body = snapshot.body(id).expect("the tree holds bodies of the snapshot");
+            if self.sieve.passes(body)
+                && let Some(margin) = margin(body)
+            {
+                let other = party(body);
+                // The query's shape, or the lower id, is side A.
+                let (a, b) = if one.side < other.side { (one, &other) } else { (&other, one) };
+                search.offer(a, b, margin);
+            }
+        };
+        match bounds {
+            Some(bounds) => {
+                let reach = search.reach();
+                let stats = snapshot.tree().nearest(&bounds, reach, |id, _| {
+                    offer(search, BodyId(id));
+                    search.reach()
+                });
+                search.cost.nodes += stats.nodes;
+                snapshot.unbounded().iter().for_each(|id| offer(search, *id));
+            }
+            // A half-space has no box: every bounded body is looked at, by one support value each.
+            None => {
+                snapshot.bodies().filter(|b| b.bounds.is_some()).for_each(|b| offer(search, b.id));
+            }
+        }
+    }
+
+    fn admits(&self, one: &Body, other: &Body) -> bool {
+        if self.sieve.disregards_allowed_collisions() {
+            return other.enabled && one.meets(other.layers, other.mask);
+        }
+        self.snapshot.admits(one, other)
+    }
+
+    fn margin(&self, one: &Body, other: &Body) -> f64 {
+        self.snapshot.margin(one.member(), other.member()).unwrap_or(self.request.context.margin)
+    }
+}
+
+fn party(body: &Body) -> Party<'_> {
+    Party { side: Side::Body { id: body.id, subshape: 0 }, shape: &body.shape, at: &body.placement }
+}
+
+/// The answer to an item: its pairs in order, and no more of them than asked for.
+pub(super) fn finish(found: Found, max_pairs: usize) -> ItemAnswer {
+    let (pairs, truncated) = sorted(found.pairs, max_pairs);
+    ItemAnswer { nearest: found.nearest, pairs, truncated, cost: found.cost, ..ItemAnswer::without_work(found.verdict) }
+}
+
+fn sorted(mut pairs: Vec<PairAnswer>, most: usize) -> (Vec<PairAnswer>, bool) {
+    pairs.sort_by(|p, q| (&p.a, &p.b).cmp(&(&q.a, &q.b)));
+    let truncated = pairs.len() > most;
+    pairs.truncate(most);
+    (pairs, truncated)
+}
+
+impl ItemAnswer {
+    /// An item that cannot be asked.
+    pub(super) fn invalid(problem: String) -> Self {
+        Self { problem: Some(problem), ..Self::without_work(Verdict::InvalidInput) }
+    }
+}
