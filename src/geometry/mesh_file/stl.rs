@@ -1,7 +1,7 @@
 //! STL: triangles without shared vertices, as text or binary.
 //!
-//! A file is binary when its length is the one its triangle count calls for, even if its header begins with `solid`,
-//! as some exporters write. Normals are not read: winding tells the same. Equal vertices are merged, first come first.
+//! A file is text when it begins with `solid` and holds no zero byte, unless its length is just what the count field of a
+//! binary file calls for: some exporters write `solid` into binary headers. Normals are not read: winding tells the same. Equal vertices are merged, first come first.
 
 use std::collections::HashMap;
 
@@ -15,8 +15,8 @@ const RECORD: usize = 50; // Normal and three corners, each three f32; two bytes
 
 pub(super) fn read(bytes: &[u8]) -> Result<MeshSoup, MeshFileError> {
     let announced = announced_length(bytes);
-    let is_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
-    if is_text && announced != Some(bytes.len() as u64) {
+    let begins_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    if begins_as_text && announced != Some(bytes.len() as u64) && !bytes.contains(&0) {
         return read_text(utf8(bytes)?);
     }
     let needed = announced.unwrap_or(COUNT_END as u64);

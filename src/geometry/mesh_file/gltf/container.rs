@@ -17,13 +17,17 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), MeshFileErro
         return Err(MeshFileError::Unsupported { place: "GLB header".into(), what: format!("version {version}") });
     }
     let (length, rest) = word(rest, "GLB header")?;
-    let Some(body) = (length as usize).checked_sub(12).and_then(|length| rest.get(..length)) else {
-        return Err(MeshFileError::Truncated {
-            place: "GLB".into(),
-            needed: u64::from(length.max(12)),
-            available: bytes.len(),
+    let Some(body) = (length as usize).checked_sub(12) else {
+        return Err(MeshFileError::Syntax {
+            place: "GLB header".into(),
+            problem: format!("length {length} is below 12"),
         });
     };
+    let body = rest.get(..body).ok_or_else(|| MeshFileError::Truncated {
+        place: "GLB".into(),
+        needed: u64::from(length),
+        available: bytes.len(),
+    })?;
     let (json, rest) = chunk(body, *b"JSON", "GLB chunk of JSON")?;
     let binary = if rest.is_empty() { None } else { Some(chunk(rest, *b"BIN\0", "binary GLB chunk")?.0) };
     Ok((json, binary))
