@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clearance::geometry::{Core, Pose};
+use clearance::narrow_phase::{Goal, separation};
 use clearance::robot::{
     Exclusion, LinkOptions, LinkOverride, MeshRequest, MeshUse, ModelOptions, RobotModel, mesh_files,
 };
@@ -66,8 +67,35 @@ fn every_pair_of_the_truth_is_looked_at() {
     }
 }
 
+/// Nearest pair of links in each of the 400 states, by brute force over our pairs and poses, against truth of 400 bits.
 #[test]
-fn meshes_become_what_each_link_asks_for_and_left_and_right_share_nothing_but_equal_files() {
+fn self_distances_are_the_truths() {
+    let model = ur5(&hulls());
+    let (queries, truths) = (text("queries.jsonl"), text("truth.jsonl"));
+    let (mut poses, mut worst) = (Vec::new(), 0.0f64);
+    for (query, truth) in queries.lines().zip(truths.lines()) {
+        let json = |line| serde_json::from_str::<serde_json::Value>(line).unwrap();
+        let (query, truth) = (json(query), json(truth));
+        assert_eq!(query["id"], truth["id"]);
+        let positions: Vec<f64> = query["q"].as_array().unwrap().iter().map(|q| q.as_f64().unwrap()).collect();
+        model.check_positions(&positions).unwrap();
+        model.link_poses(&positions, &Pose::identity(), &mut poses);
+        let placed = |link: u32| {
+            let shape = &model.links()[link as usize].shapes[0];
+            (&*shape.shape, poses[link as usize].compose(&shape.pose).placement())
+        };
+        let distance = |&(a, b): &(u32, u32)| {
+            let ((a, at_a), (b, at_b)) = (placed(a), placed(b));
+            separation(a, b, &at_a, &at_b, &Goal::penetration()).unwrap().signed_distance
+        };
+        let least = model.self_pairs().iter().map(distance).fold(f64::INFINITY, f64::min);
+        worst = worst.max((least - truth["self_min"].as_f64().unwrap()).abs());
+    }
+    assert!(worst < 1e-14, "{worst:e}");
+}
+
+#[test]
+fn meshes_become_what_each_link_asks_for() {
     let mut options = hulls();
     let exact = LinkOverride { mesh: Some(MeshUse::Exact), padding: Some(0.01), ..LinkOverride::default() };
     options.links.insert("forearm_link_0".to_owned(), exact);
