@@ -6,7 +6,6 @@ use super::change::Fault;
 use super::edit::{BodyRef, NewBody};
 use super::party::PartyKey;
 use super::{Body, BodyId, Reason, Snapshot};
-use crate::geometry::tolerance::LARGEST_LENGTH;
 use crate::geometry::{Pose, Shape};
 use crate::limits::{LimitExceeded, Limits};
 
@@ -16,7 +15,6 @@ impl Snapshot {
         self.check_new_name(name, limits)?;
         LimitExceeded::check("max_bodies", self.bodies.len() + 1, limits.max_bodies)
             .map_err(|limit| Reason::Limit(limit).of("name"))?;
-        check_place(pose, "pose")?;
         let shape = inflated(shape, *scale, *padding)?;
         let (groups, group_keys) = self.join_groups(groups, limits)?;
         let id = self.next_body;
@@ -56,7 +54,6 @@ impl Snapshot {
 
     pub(super) fn move_body(&mut self, body: &BodyRef, pose: &Pose) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
-        check_place(pose, "pose")?;
         let placement = pose.placement();
         let bounds = body.shape.placed_bounds(&placement);
         self.put(Body { pose: *pose, placement, bounds, ..Body::clone(&body) });
@@ -119,7 +116,7 @@ impl Snapshot {
         }
         LimitExceeded::check("max_name_bytes", name.len(), limits.max_name_bytes)
             .map_err(|limit| Reason::Limit(limit).of("name"))?;
-        if self.names.contains_key(name) {
+        if self.names.contains_key(name) || self.robot(name).is_some() {
             return Err(Reason::NameTaken { name: name.to_owned() }.of("name"));
         }
         Ok(())
@@ -188,12 +185,6 @@ pub(super) fn check_group_name(name: &str, field: &'static str, limits: &Limits)
     }
     LimitExceeded::check("max_name_bytes", name.len(), limits.max_name_bytes)
         .map_err(|limit| Reason::Limit(limit).of(field))
-}
-
-/// Checks that the boxes of a shape placed there stay finite.
-pub(super) fn check_place(pose: &Pose, field: &'static str) -> Result<(), Fault> {
-    let value = pose.translation().amax();
-    if value > LARGEST_LENGTH { Err(Reason::TooFar { value, limit: LARGEST_LENGTH }.of(field)) } else { Ok(()) }
 }
 
 /// The shape scaled, then padded.

@@ -31,6 +31,9 @@ impl Snapshot {
             Edit::SetGroups { body, groups } => self.set_groups(body, groups, limits)?,
             Edit::SetLayers { body, layers, mask } => self.set_layers(body, *layers, *mask)?,
             Edit::SetEnabled { body, enabled } => self.set_enabled(body, *enabled)?,
+            Edit::AddRobot { name, model, base } => self.add_robot(name, model, base, limits)?,
+            Edit::MoveRobot { robot, base } => self.move_robot(robot, base)?,
+            Edit::RemoveRobot { robot } => self.remove_robot(robot)?,
             Edit::SetAllowedCollision { a, b, allowed } => self.set_allowed_collision(a, b, *allowed, limits)?,
             Edit::SetPairMargin { a, b, margin } => self.set_pair_margin(a, b, *margin, limits)?,
         }
@@ -40,9 +43,11 @@ impl Snapshot {
     /// Works out what is kept beside the edited content, where the edits touched what it depends on.
     pub(super) fn settle(&mut self, before: &Self, revision: Revision) {
         self.revision = revision;
-        if self.margins.is_as_in(&before.margins) {
-            return;
+        if !self.allowed.is_as_in(&before.allowed) {
+            self.settle_self_pairs();
         }
-        self.largest_margin = self.margins.values().fold(0.0, f64::max);
+        if !self.margins.is_as_in(&before.margins) {
+            self.largest_margin = self.margins.values().fold(0.0, f64::max);
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{BodyId, Party};
 use crate::geometry::{Pose, Shape};
+use crate::robot::RobotModel;
 
 /// One change. The edits of a list are made in order, and each sees what the earlier ones did.
 #[derive(Clone, Debug)]
@@ -55,6 +56,27 @@ pub enum Edit {
         body: BodyRef,
         /// Whether it takes part.
         enabled: bool,
+    },
+    /// A robot stands in the scene from now on.
+    AddRobot {
+        /// UTF-8, not empty, without `/`, unique among the scene's bodies and robots.
+        name: String,
+        /// What it is.
+        model: Arc<RobotModel>,
+        /// The root link's frame in the world, metres.
+        base: Pose,
+    },
+    /// A robot's base is somewhere else from now on.
+    MoveRobot {
+        /// The robot's name in the scene.
+        robot: String,
+        /// The root link's frame in the world, metres.
+        base: Pose,
+    },
+    /// A robot leaves the scene, with the entries for pairs that name it or its links.
+    RemoveRobot {
+        /// The robot's name in the scene.
+        robot: String,
     },
     /// An entry of the allowed-collision matrix. It replaces an earlier one of the same two parties, whichever comes
     /// first.

@@ -14,6 +14,8 @@ mod pair_changes;
 mod pair_table;
 mod party;
 mod refusal;
+mod robot_changes;
+mod robot_in_scene;
 #[expect(clippy::module_inception, reason = "the scene itself is one of the things in the module on scenes")]
 mod scene;
 mod snapshot;
@@ -27,6 +29,7 @@ pub use edit::{BodyRef, Edit, NewBody};
 pub use id::{BodyId, Epoch, Revision};
 pub use party::{Member, Party};
 pub use refusal::{NotKept, Reason, Refusal};
+pub use robot_in_scene::RobotInScene;
 pub use scene::{Applied, Scene};
 pub use snapshot::Snapshot;
 pub use validate::SnapshotDefect;

@@ -42,7 +42,7 @@ impl Snapshot {
     pub(super) fn forget_entries_of(&mut self, party: PartyKey) {
         let mut others = self.allowed.forget(party);
         others.extend(self.margins.forget(party));
-        others.into_iter().filter(|other| other.is_many()).for_each(|other| self.groups.drop_use(other));
+        others.into_iter().filter(|other| other.is_group()).for_each(|other| self.groups.drop_use(other));
     }
 
     fn pair_of_keys(&mut self, a: &Party, b: &Party, limits: &Limits) -> Result<(PartyKey, PartyKey), Fault> {
@@ -56,6 +56,14 @@ impl Snapshot {
     fn key_of(&mut self, party: &Party, field: &'static str, limits: &Limits) -> Result<PartyKey, Fault> {
         match party {
             Party::Body(body) => Ok(PartyKey::body(self.find(body, field)?.id)),
+            Party::Link { robot, link } => {
+                let robot = &self.robots[self.place_of_robot(robot, field)?];
+                let index = robot.model.link(link);
+                index
+                    .map(|index| robot.link_key(index))
+                    .ok_or_else(|| Reason::UnknownLink { robot: robot.name.to_string(), link: link.clone() }.of(field))
+            }
+            Party::Robot(name) => Ok(self.robots[self.place_of_robot(name, field)?].key[0]),
             Party::Group(name) => {
                 check_group_name(name, field, limits)?;
                 Ok(self.groups.named(name).0)

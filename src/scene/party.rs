@@ -8,8 +8,17 @@ use super::edit::BodyRef;
 pub enum Party {
     /// One body.
     Body(BodyRef),
+    /// One link of a robot that stands in the scene.
+    Link {
+        /// The robot's name in the scene.
+        robot: String,
+        /// The link's name in its description.
+        link: String,
+    },
     /// All bodies of a group, now and later. The group need not have members yet.
     Group(String),
+    /// All links of a robot that stands in the scene.
+    Robot(String),
     /// Every body and every link.
     Everything,
 }
@@ -30,17 +39,26 @@ impl PartyKey {
         Self::of_kind(2, number)
     }
 
+    pub(super) fn robot(number: u64) -> Self {
+        Self::of_kind(3, number)
+    }
+
+    /// Links are numbered through, over all robots that ever stood in the scene.
+    pub(super) fn link(number: u64) -> Self {
+        Self::of_kind(4, number)
+    }
+
     fn of_kind(kind: u64, number: u64) -> Self {
         Self(number << 3 | kind)
     }
 
-    /// A body.
+    /// A body or a link.
     pub(super) fn is_one(self) -> bool {
-        self.0 & 7 == 1
+        matches!(self.0 & 7, 1 | 4)
     }
 
     /// A group.
-    pub(super) fn is_many(self) -> bool {
+    pub(super) fn is_group(self) -> bool {
         self.0 & 7 == 2
     }
 

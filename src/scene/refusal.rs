@@ -98,14 +98,6 @@ pub enum Reason {
         /// As it was given.
         value: f64,
     },
-    /// A place too far out for the products of lengths that the tree takes.
-    #[error("a coordinate of {value} m is beyond the largest accepted, {limit} m")]
-    TooFar {
-        /// The largest coordinate by size.
-        value: f64,
-        /// The largest accepted.
-        limit: f64,
-    },
     /// The shape cannot be scaled or padded so.
     #[error(transparent)]
     Shape(#[from] InvalidShape),

@@ -7,7 +7,7 @@ use rpds::HashTrieMapSync;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
-use super::{Body, BodyId, Epoch, Member, Revision};
+use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene};
 use crate::broad_phase::DynamicTree;
 
 /// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
@@ -25,6 +25,10 @@ pub struct Snapshot {
     pub(super) tree: DynamicTree,
     /// Enabled bodies without bounds, sorted.
     pub(super) unbounded: Arc<Vec<BodyId>>,
+    /// In the order of their names.
+    pub(super) robots: Arc<Vec<Arc<RobotInScene>>>,
+    /// The number of the next robot's first link.
+    pub(super) next_link: u64,
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
@@ -42,6 +46,8 @@ impl Snapshot {
             groups: Groups::new(),
             tree: DynamicTree::new(),
             unbounded: Arc::new(Vec::new()),
+            robots: Arc::new(Vec::new()),
+            next_link: 0,
             // Looking at a pair is more cautious than allowing its collision.
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
@@ -96,6 +102,18 @@ impl Snapshot {
         &self.unbounded
     }
 
+    /// All robots in the order of their names.
+    pub fn robots(&self) -> impl Iterator<Item = &Arc<RobotInScene>> {
+        self.robots.iter()
+    }
+
+    /// A robot by its name.
+    #[must_use]
+    pub fn robot(&self, name: &str) -> Option<&Arc<RobotInScene>> {
+        let place = self.robots.binary_search_by(|robot| (*robot.name).cmp(name)).ok()?;
+        Some(&self.robots[place])
+    }
+
     /// Whether a body is in the group, or an entry for pairs speaks of it.
     #[must_use]
     pub fn has_group(&self, name: &str) -> bool {
@@ -107,6 +125,14 @@ impl Snapshot {
     #[must_use]
     pub fn admits(&self, a: &Body, b: &Body) -> bool {
         b.enabled && a.meets(b.layers, b.mask) && !self.is_allowed(a.member(), b.member())
+    }
+
+    /// Whether a robot's link, by its index, is held against a body: the body takes part and is in and collides with
+    /// some layer (robots are in all and collide with all), and the allowed-collision matrix does not allow their
+    /// collision.
+    #[must_use]
+    pub fn admits_link(&self, robot: &RobotInScene, link: u32, body: &Body) -> bool {
+        body.meets(u32::MAX, u32::MAX) && !self.is_allowed(robot.link(link), body.member())
     }
 
     /// Whether the allowed-collision matrix allows the pair's collision, so that it is not looked at. A pair that no

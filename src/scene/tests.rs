@@ -1,20 +1,57 @@
-//! The scene against what it should hold.
+//! The scene against what it should hold. Here is what the tests have in common: small bodies, a small robot, and edits
+//! that must be accepted.
+
+mod entries;
+mod history;
+mod model;
+mod random_edits;
+mod refusals;
 
 use std::sync::Arc;
 
 use super::*;
 use crate::geometry::{Pose, Quaternion, Shape, Vec3};
+use crate::robot::{ModelOptions, RobotModel};
 
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Quaternion::IDENTITY).unwrap()
+fn at(x: f64) -> Pose {
+    Pose::new(Vec3::new(x, 0.0, 0.0), Quaternion::IDENTITY).unwrap()
 }
 
 fn ball(name: &str, x: f64) -> NewBody {
-    NewBody::new(name, Arc::new(Shape::sphere(0.5).unwrap()), at(x, 0.0, 0.0))
+    NewBody::new(name, Arc::new(Shape::sphere(0.5).unwrap()), at(x))
+}
+
+fn grouped(name: &str, groups: &[&str]) -> NewBody {
+    NewBody { groups: groups.iter().map(|group| (*group).to_owned()).collect(), ..ball(name, 0.0) }
 }
 
 fn floor(name: &str) -> NewBody {
     NewBody::new(name, Arc::new(Shape::half_space(Vec3::z(), 0.0).unwrap()), Pose::identity())
+}
+
+/// A chain of the links `base`, `upper`, `lower`: the outer two are held against each other, neighbours are not.
+fn arm() -> Arc<RobotModel> {
+    let link = |name: &str| {
+        let ball = "<geometry><sphere radius='0.1'/></geometry>";
+        format!("<link name='{name}'><collision>{ball}</collision></link>")
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><origin xyz='0 0 0.3'/><axis xyz='1 0 0'/>\
+             <parent link='{parent}'/><child link='{child}'/></joint>"
+        )
+    };
+    let (links, joints) = (
+        ["base", "upper", "lower"].map(link).concat(),
+        joint("shoulder", "base", "upper") + &joint("elbow", "upper", "lower"),
+    );
+    let urdf = format!("<robot name='arm'>{links}{joints}</robot>");
+    let model = RobotModel::from_urdf(&urdf, None, &mut |_| Err("no meshes".to_owned()), &ModelOptions::default());
+    Arc::new(model.unwrap())
+}
+
+fn add_arm(name: &str, model: &Arc<RobotModel>) -> Edit {
+    Edit::AddRobot { name: name.to_owned(), model: Arc::clone(model), base: Pose::identity() }
 }
 
 /// Applies edits that must be accepted, and looks at the result as a whole.
@@ -35,8 +72,20 @@ fn one(name: &str) -> Party {
     Party::Body(name.into())
 }
 
+fn group(name: &str) -> Party {
+    Party::Group(name.to_owned())
+}
+
+fn link(robot: &str, link: &str) -> Party {
+    Party::Link { robot: robot.to_owned(), link: link.to_owned() }
+}
+
 fn allow(a: Party, b: Party, allowed: Option<bool>) -> Edit {
     Edit::SetAllowedCollision { a, b, allowed }
+}
+
+fn margin(a: Party, b: Party, margin: Option<f64>) -> Edit {
+    Edit::SetPairMargin { a, b, margin }
 }
 
 fn admits(scene: &Scene, a: &str, b: &str) -> bool {
@@ -44,58 +93,4 @@ fn admits(scene: &Scene, a: &str, b: &str) -> bool {
     let (a, b) = (snapshot.body_named(a).unwrap(), snapshot.body_named(b).unwrap());
     assert_eq!(snapshot.admits(a, b), snapshot.admits(b, a));
     snapshot.admits(a, b)
-}
-
-#[test]
-fn bodies_are_found_by_id_name_and_place() {
-    let mut scene = Scene::new(Epoch(7));
-    let Applied { revision, added } = apply(&mut scene, &[Edit::AddBody(ball("a", 0.0)), Edit::AddBody(floor("f"))]);
-    assert_eq!((revision, added), (Revision(1), vec![BodyId(1), BodyId(2)]));
-    let snapshot = scene.snapshot();
-    assert_eq!(snapshot.epoch(), Epoch(7));
-    assert_eq!(snapshot.bodies().map(|body| &*body.name).collect::<Vec<_>>(), ["a", "f"]);
-    assert_eq!(snapshot.body_named("a").unwrap().id, BodyId(1));
-    assert_eq!(snapshot.unbounded(), [BodyId(2)]);
-    assert_eq!(snapshot.tree().iter().map(|(payload, _)| payload).collect::<Vec<_>>(), [1]);
-    assert!(snapshot.body(BodyId(3)).is_none() && snapshot.body_named("b").is_none());
-}
-
-#[test]
-fn a_refused_list_changes_nothing_and_says_where_it_failed() {
-    let mut scene = scene_of([ball("a", 0.0)]);
-    let before = scene.snapshot();
-    let edits = [Edit::AddBody(ball("b", 1.0)), Edit::AddBody(ball("a", 2.0))];
-    let refusal = scene.apply(&edits, None).unwrap_err();
-    assert_eq!(refusal.to_string(), "edits[1].name: the name \"a\" is taken");
-    assert!(Arc::ptr_eq(&before, &scene.snapshot()));
-    // The id that the refused list would have given goes to the next body.
-    assert_eq!(apply(&mut scene, &[Edit::AddBody(ball("c", 0.0))]).added, [BodyId(2)]);
-}
-
-#[test]
-fn the_most_specific_entry_decides_and_looking_wins_a_tie() {
-    let grouped = |name: &str, groups: &[&str]| NewBody {
-        groups: groups.iter().map(|group| (*group).to_owned()).collect(),
-        ..ball(name, 0.0)
-    };
-    let mut scene = scene_of([grouped("a", &["g"]), grouped("b", &["h"]), grouped("c", &["g", "k"])]);
-    let group = |name: &str| Party::Group(name.to_owned());
-    assert!(admits(&scene, "a", "b"));
-    // From the least specific entry to the most specific one: each turns the one before around.
-    for (a, b, allowed) in [
-        (Party::Everything, Party::Everything, true),
-        (Party::Everything, group("g"), false),
-        (group("h"), group("g"), true),
-        (one("a"), Party::Everything, false),
-        (group("h"), one("a"), true),
-        (one("b"), one("a"), false),
-    ] {
-        apply(&mut scene, &[allow(a.clone(), b.clone(), Some(allowed))]);
-        assert_eq!(admits(&scene, "a", "b"), !allowed, "{a:?} {b:?}");
-    }
-    assert!(!admits(&scene, "c", "b"));
-    apply(&mut scene, &[allow(group("k"), group("h"), Some(false))]);
-    assert!(admits(&scene, "c", "b"), "of two entries for groups the one to look wins");
-    apply(&mut scene, &[allow(one("a"), one("b"), None)]);
-    assert!(!admits(&scene, "a", "b"));
 }
