@@ -12,6 +12,8 @@ pub struct TriangleMesh {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     tree: MeshTree,
+    /// One vertex of each connected part of the surface.
+    parts: Vec<u32>,
     solid: bool,
 }
 
@@ -35,7 +37,8 @@ impl TriangleMesh {
         let bounds: Vec<Aabb> =
             triangles.iter().map(|corners| Aabb::around(corners.map(|c| vertices[c as usize]))).collect();
         let tree = MeshTree::new(&bounds);
-        Ok(Self { vertices, triangles, tree, solid: false })
+        let parts = connected_parts(&merged(&vertices), &triangles);
+        Ok(Self { vertices, triangles, tree, parts, solid: false })
     }
 
     /// A solid body. Vertices at equal positions are taken as one (STL repeats each of them).
@@ -78,6 +81,11 @@ impl TriangleMesh {
         &self.tree
     }
 
+    /// One vertex of each connected part of the surface, metres.
+    pub fn parts(&self) -> impl Iterator<Item = Vec3> {
+        self.parts.iter().map(|&v| self.vertices[v as usize])
+    }
+
     /// Whether what lies inside belongs to the body.
     #[must_use]
     pub fn is_solid(&self) -> bool {
@@ -113,11 +121,7 @@ impl TriangleMesh {
 
     /// Each directed edge must occur once, and so must its opposite.
     fn check_closed(&self) -> Result<(), InvalidShape> {
-        let mut first_at = BTreeMap::new();
-        let merged: Vec<u32> = (0u32..)
-            .zip(&self.vertices)
-            .map(|(i, v)| *first_at.entry([v.x, v.y, v.z].map(|c| (c + 0.0).to_bits())).or_insert(i))
-            .collect();
+        let merged = merged(&self.vertices);
         let mut edges: BTreeMap<(u32, u32), usize> = BTreeMap::new();
         for corners in &self.triangles {
             let [a, b, c] = corners.map(|i| merged[i as usize]);
@@ -136,6 +140,34 @@ impl TriangleMesh {
         }
         Ok(())
     }
+}
+
+/// For each vertex the first one at the same position.
+fn merged(vertices: &[Vec3]) -> Vec<u32> {
+    let mut first_at = BTreeMap::new();
+    let position = |v: &Vec3| [v.x, v.y, v.z].map(|c| (c + 0.0).to_bits()); // + 0.0: -0 equals 0
+    (0u32..).zip(vertices).map(|(i, v)| *first_at.entry(position(v)).or_insert(i)).collect()
+}
+
+/// One vertex of each set of triangles that hang together by their (merged) corners: a union-find.
+fn connected_parts(merged: &[u32], triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0u32..).take(merged.len()).collect();
+    let root = |parent: &mut Vec<u32>, mut v: u32| {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    };
+    for corners in triangles {
+        let [a, b, c] = corners.map(|v| root(&mut parent, merged[v as usize]));
+        let least = a.min(b).min(c);
+        [a, b, c].into_iter().for_each(|v| parent[v as usize] = least);
+    }
+    let mut parts: Vec<u32> = triangles.iter().map(|t| root(&mut parent, merged[t[0] as usize])).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    parts
 }
 
 #[cfg(test)]

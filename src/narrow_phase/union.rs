@@ -5,16 +5,17 @@
 //! of their boxes, until no box is near enough to matter: what is left unopened is proved farther than the answer, so
 //! the bracket of the minimum is the minimum of the brackets.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::convex::{self, Convex};
-use super::goal::Goal;
+use super::goal::{Depth, Goal};
 use super::outcome::{Bracket, Cost, Separation, Termination};
 use super::support::radius;
 use super::unbounded::{self, Unbounded};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Aabb, Core, Placement, Shape, TriangleMesh, Vec3};
+use crate::geometry::{Aabb, Core, Mat3, Part, Placement, Shape, TriangleMesh, Vec3};
 
 /// Something that has a place and is convex, unbounded, or a mesh: what is left when a compound is taken apart.
 #[derive(Clone, Copy)]
@@ -34,7 +35,7 @@ pub(super) fn pieces<'a>(shape: &'a Shape, at: &Placement) -> Vec<Piece<'a>> {
     let Core::Compound(compound) = shape.core() else {
         return vec![Piece { shape, swept_radius: shape.swept_radius(), at: *at, placement_error: 0.0, part: 0 }];
     };
-    let piece = |(part, p): (u32, &'a crate::geometry::Part)| {
+    let piece = |(part, p): (u32, &'a Part)| {
         let inner = p.pose.placement();
         // Composing rounds no more than relating two poses does, which the error of a support value covers once.
         let reach = radius(p.shape.core()) + inner.translation.norm() + at.translation.norm();
@@ -54,10 +55,11 @@ pub(super) fn separation(a: &[Piece], b: &[Piece], goal: &Goal) -> Option<Separa
     let mut least = Least::new(goal);
     for pa in a {
         for pb in b {
-            if least.is_settled() {
-                return least.finish();
+            match deepest_possible(pa, pb) {
+                // What is left out may be deeper than what was found, but no deeper than this.
+                Some(depth) if least.is_settled() => least.lower = least.lower.min(-depth),
+                _ => pair_of_pieces(pa, pb, &mut least),
             }
-            pair_of_pieces(pa, pb, &mut least);
         }
     }
     least.finish()
@@ -154,8 +156,8 @@ impl<'a> Least<'a> {
     /// Whether more pairs cannot change what was asked.
     fn is_settled(&self) -> bool {
         let overlap_suffices = match self.asked.depth {
-            super::goal::Depth::Verdict | super::goal::Depth::Distance => true,
-            super::goal::Depth::Penetration => false,
+            Depth::Verdict | Depth::Distance => true,
+            Depth::Penetration => false,
         };
         overlap_suffices && self.upper <= 0.0
     }
@@ -232,16 +234,26 @@ impl<'a> Side<'a> {
     }
 
     /// One of the items, as a shape and its number.
-    fn item(&self, index: u32) -> (std::borrow::Cow<'a, Shape>, u32) {
+    fn item(&self, index: u32) -> (Cow<'a, Shape>, u32) {
         match self.mesh {
             Some(mesh) => {
                 let [a, b, c] = mesh.triangle(index as usize);
                 let triangle = Shape::triangle(a, b, c).expect("the vertices of a mesh were checked");
-                (std::borrow::Cow::Owned(triangle), index)
+                (Cow::Owned(triangle), index)
             }
-            None => (std::borrow::Cow::Borrowed(self.piece.shape), self.piece.part),
+            None => (Cow::Borrowed(self.piece.shape), self.piece.part),
         }
     }
+}
+
+/// No point of two bounded pieces is deeper than this in the other, metres: a translation of this length along an axis
+/// of A's frame separates their bounds. None when one is unbounded.
+pub(super) fn deepest_possible(a: &Piece, b: &Piece) -> Option<f64> {
+    let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
+    let box_a = a.shape.placed_bounds(&own_frame)?;
+    let box_b = b.shape.placed_bounds(&Placement::relative(&a.at, &b.at))?;
+    let (one_way, other_way) = (box_a.max - box_b.min, box_b.max - box_a.min);
+    Some((one_way.min().min(other_way.min()) + a.swept_radius + b.swept_radius).max(0.0))
 }
 
 /// Opens pairs of nodes, nearest first, until what is left is farther than the best found.
@@ -254,11 +266,17 @@ fn walk(a: &Piece, b: &Piece, least: &mut Least) {
     while let Some(Open { distance: nearest, a: na, b: nb }) = open.pop() {
         // An overlap of boxes says nothing about depth, so it is never far enough. One pair of items is looked at in any
         // case: its witness is the proof from above.
-        let far = nearest > 0.0 && nearest > least.goal().cut_off;
-        if least.best.is_some() && (far || least.is_settled() || (least.asked.stop)()) {
-            least.lower = least.lower.min(nearest);
-            least.limited |= (least.asked.stop)();
-            return;
+        if least.best.is_some() {
+            if nearest > 0.0 && nearest > least.goal().cut_off {
+                least.lower = least.lower.min(nearest);
+                return;
+            }
+            let stopped = (least.asked.stop)();
+            if let (true, Some(depth)) = (stopped || least.is_settled(), deepest_possible(a, b)) {
+                least.lower = least.lower.min(if nearest > 0.0 { nearest } else { -depth });
+                least.limited |= stopped;
+                return;
+            }
         }
         least.cost.nodes += 1;
         let size = |side: &Side, n: usize| side.bounds(n).map_or(f64::INFINITY, |b| b.half_area());

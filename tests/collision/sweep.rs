@@ -13,7 +13,7 @@ use crate::samples::{Random, convex_shapes};
 /// Least `direction . x` over the placed shape, by a formula of its own for each kind.
 fn least(shape: &Shape, at: &Placement, direction: Vec3) -> f64 {
     let d = at.direction_into(direction);
-    let across = d.x.hypot(d.y);
+    let across = libm::hypot(d.x, d.y);
     let core = match shape.core() {
         Core::Point => 0.0,
         Core::Cuboid { half_extents } => -half_extents.dot(&d.abs()),

@@ -63,7 +63,17 @@ fn a_mesh_is_as_far_as_its_nearest_triangle() {
             let least = one_by_one.map(|s| s.signed_distance).fold(f64::INFINITY, f64::min);
             assert!((found.signed_distance - least).abs() < 1e-9, "{}: {found:?}, {least}", other.kind());
             assert!(found.bracket.lower <= least + 1e-12 && least - 1e-12 <= found.bracket.upper);
-            if least > 0.0 { apart += 1 } else { crossing += 1 }
+            if least > 0.0 {
+                apart += 1
+            } else {
+                crossing += 1
+            }
+            // Stopping at the first contact leaves a bracket that still holds the deepest.
+            for goal in [Goal::verdict(), Goal { depth: Depth::Distance, ..Goal::penetration() }] {
+                let early = separation(&mesh, &other, &at_mesh, &at_other, &goal).unwrap();
+                assert!(early.bracket.lower <= least + 1e-12, "{}: {early:?}, {least}", other.kind());
+                assert_eq!(early.bracket.upper <= 0.0, found.bracket.upper <= 0.0);
+            }
         }
     }
     assert!(apart > 10 && crossing > 10, "{apart} apart, {crossing} crossing");
@@ -109,6 +119,17 @@ fn only_a_solid_mesh_collides_with_what_is_inside_it() {
     assert!(outside.bracket.lower > 0.0);
     let nested = separation(&solid(), &solid().scaled(0.25).unwrap(), &here, &center, &Goal::verdict()).unwrap();
     assert!(nested.bracket.upper <= 0.0, "a mesh inside a solid one: {nested:?}");
+}
+
+#[test]
+fn every_part_of_a_mesh_is_looked_for_inside_a_solid_one() {
+    let corner = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+    let far = [corner(5.0, 0.0), corner(6.0, 0.0), corner(5.0, 1.0)];
+    let inside = far.map(|v| v * 0.01);
+    let both = TriangleMesh::surface([far, inside].concat(), vec![[0, 1, 2], [3, 4, 5]]).unwrap();
+    let here = at(0.0, 0.0, 0.0);
+    let found = separation(&solid(), &Shape::mesh(Arc::new(both)), &here, &here, &Goal::verdict()).unwrap();
+    assert!(found.bracket.upper <= 0.0, "{found:?}");
 }
 
 #[test]
