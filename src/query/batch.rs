@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::pairs::Pairs;
-use super::request::{Mode, PairQuery};
+use super::request::{CheckStates, Mode, PairQuery};
+use super::states::States;
 use crate::narrow_phase::Cost;
 use crate::scene::Snapshot;
 
@@ -17,6 +18,7 @@ pub struct Prepared<'a> {
 }
 
 enum Question<'a> {
+    States(States<'a>),
     Pairs(Pairs<'a>),
 }
 
@@ -27,6 +29,15 @@ pub struct Part {
 }
 
 impl<'a> Prepared<'a> {
+    /// Is the robot free in these states?
+    ///
+    /// # Errors
+    /// A context that cannot be, a robot that is not in the scene, positions that are no whole number of states.
+    pub fn check_states(snapshot: &'a Snapshot, request: &'a CheckStates) -> Result<Self, Refused> {
+        let question = Question::States(States::new(snapshot, request)?);
+        Ok(Self { snapshot, mode: request.mode, question })
+    }
+
     /// Which pairs touch?
     ///
     /// # Errors
@@ -49,6 +60,7 @@ impl<'a> Prepared<'a> {
     #[must_use]
     pub fn len(&self) -> usize {
         match &self.question {
+            Question::States(states) => states.len(),
             Question::Pairs(pairs) => pairs.len(),
         }
     }
@@ -64,6 +76,10 @@ impl<'a> Prepared<'a> {
     #[must_use]
     pub fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> Part {
         match &self.question {
+            Question::States(states) => {
+                let mut scratch = states.scratch();
+                self.run_items(range, stop, |i| states.answer(i, &mut scratch, stop))
+            }
             Question::Pairs(pairs) => self.run_items(range, stop, |i| pairs.answer(i, stop)),
         }
     }

@@ -6,6 +6,7 @@ mod context;
 mod pairs;
 mod request;
 mod search;
+mod states;
 mod verdict;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
