@@ -29,7 +29,8 @@ fn sources() -> Vec<Source> {
         }
     }
     files.sort();
-    files.retain(|file| !file.ends_with("tests.rs"));
+    // A module `tests` is compiled for tests alone, and so is what lies in its folder.
+    files.retain(|file| !file.ends_with("tests.rs") && !file.parent().is_some_and(|folder| folder.ends_with("tests")));
     let read = |file: &std::path::PathBuf| {
         let name = file.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
         Source::parse(&name, &fs::read_to_string(file).unwrap()).unwrap()
