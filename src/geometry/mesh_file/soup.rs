@@ -4,7 +4,7 @@ use super::MeshFileError;
 use crate::geometry::Vec3;
 
 /// Triangles a file may expand to. Scene graphs may instance one mesh many times, so the file's size is no bound.
-pub const MOST_TRIANGLES: usize = 20_000_000;
+pub const MOST_TRIANGLES: usize = 5_000_000;
 
 /// What a file holds: triangles over the vertices they use. Metres, in the file's frame.
 #[derive(Clone, Debug, Default, PartialEq)]
