@@ -1,0 +1,6 @@
+//! Queries on snapshots, in process: a robot with known truth, and bodies against brute force.
+
+mod batches;
+mod bodies;
+mod ur5;
+mod workload;
