@@ -1,5 +1,7 @@
 //! The convex hull of a cloud of points, as the few points that support it.
 
+use std::collections::HashMap;
+
 use super::shape::position;
 use super::tolerance::UNIT_ROUNDOFF;
 use super::{Aabb, InvalidShape, Vec3};
@@ -122,27 +124,47 @@ fn extreme_points(points: &[Vec3]) -> Option<Vec<Vec3>> {
     let (corners, faces) = std::panic::catch_unwind(|| try_convex_hull(&unit)).ok()?.ok()?;
     let mut kept = vec![false; points.len()];
     let mut faces_by_point = Vec::with_capacity(faces.len());
-    let position_of = |corner: &Vector| unit.iter().position(|p| p == corner);
-    let index: Vec<usize> = corners.iter().map(position_of).collect::<Option<_>>()?;
+    let bits = |p: &Vector| [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits()); // + 0.0: -0 equals 0
+    let mut first_at = HashMap::with_capacity(unit.len());
+    unit.iter().enumerate().for_each(|(i, p)| _ = first_at.entry(bits(p)).or_insert(i));
+    let index: Vec<usize> = corners.iter().map(|corner| first_at.get(&bits(corner)).copied()).collect::<Option<_>>()?;
     for face in &faces {
         let face = face.map(|corner| index[corner as usize]);
         face.iter().for_each(|&i| kept[i] = true);
         faces_by_point.push(face);
     }
-    let enclosed = points.iter().zip(&kept).all(|(p, kept)| *kept || is_enclosed(*p, points, &faces_by_point, size));
-    enclosed.then(|| points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(p, _)| *p).collect())
+    if kept.iter().any(|kept| !kept) {
+        let planes: Vec<Plane> =
+            faces_by_point.iter().map(|face| Plane::through(*face, points, size)).collect::<Option<_>>()?;
+        let inner = points.iter().zip(&kept).filter(|(_, kept)| !**kept);
+        if inner.into_iter().any(|(p, _)| !planes.iter().all(|plane| plane.has_behind(*p))) {
+            return None;
+        }
+    }
+    Some(points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(p, _)| *p).collect())
 }
 
-/// Whether `p` is behind every face, to a few units in the last place of the hull's size. A face too thin to have a
-/// trustworthy plane encloses nothing: the whole answer is then not used.
-fn is_enclosed(p: Vec3, points: &[Vec3], faces: &[[usize; 3]], size: f64) -> bool {
-    faces.iter().all(|face| {
+/// The plane of a face, and how far before it a point may lie and still count as behind: a few units in the last place
+/// of the hull's size.
+struct Plane {
+    point: Vec3,
+    normal: Vec3,
+    slack: f64,
+}
+
+impl Plane {
+    /// None for a face too thin to have a trustworthy plane: it encloses nothing.
+    fn through(face: [usize; 3], points: &[Vec3], size: f64) -> Option<Self> {
         let [a, b, c] = face.map(|i| points[i]);
         let normal = (b - a).cross(&(c - a));
         let area = normal.norm();
         let thin = area <= 1e-3 * (b - a).norm() * (c - a).norm();
-        !thin && normal.dot(&(p - a)) <= 4.0 * UNIT_ROUNDOFF * size * area
-    })
+        (!thin).then_some(Self { point: a, normal, slack: 4.0 * UNIT_ROUNDOFF * size * area })
+    }
+
+    fn has_behind(&self, p: Vec3) -> bool {
+        self.normal.dot(&(p - self.point)) <= self.slack
+    }
 }
 
 #[cfg(test)]
