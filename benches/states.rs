@@ -1,0 +1,170 @@
+//! States of a robot checked in a second: in process, through gRPC, and by the usual checker in the same run.
+//!
+//! `cargo bench --bench states`, after `benches/peers/setup` for the comparison. The workload is the UR5 of `tests/data`:
+//! 400 states in 21 scenes. All run on one core, in turn, round after round; a figure is the median over the rounds, a
+//! ratio the median of the rounds' ratios, so that a machine that slows down slows both sides.
+
+#[path = "../tests/query/workload.rs"]
+mod workload;
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clearance::query::{CheckStates, Context, Mode, Prepared, Wants};
+use clearance::scene::Snapshot;
+
+const ROUNDS: usize = 7;
+
+/// Every pass over the workload is repeated until it has taken this long, seconds.
+const LEAST_TIME: f64 = 0.3;
+
+const VERDICT: Wants = Wants::VERDICT;
+/// As the usual checker: the least signed distance over all pairs, penetration included.
+const DISTANCE: Wants = Wants { distance: true, depth: true, ..Wants::VERDICT };
+
+/// The states of one scene, joined to one request.
+struct Batch {
+    snapshot: Arc<Snapshot>,
+    positions: Vec<f64>,
+}
+
+fn main() {
+    let robot = workload::ur5();
+    let width = robot.degrees_of_freedom();
+    let scenes = workload::scenes(&robot);
+    let states = workload::states();
+    let batches: Vec<Batch> = (scenes.iter().enumerate())
+        .map(|(i, snapshot)| {
+            let own = states.iter().filter(|(scene, _, _)| *scene == i);
+            Batch { snapshot: Arc::clone(snapshot), positions: own.flat_map(|(_, q, _)| q.clone()).collect() }
+        })
+        .collect();
+    let mut peer = UsualChecker::start();
+    let mut table = Table::default();
+    for _ in 0..ROUNDS {
+        let usual = peer.as_mut().map(UsualChecker::pass);
+        for (question, wants) in [("verdict", VERDICT), ("distance", DISTANCE)] {
+            let usual = usual.as_ref().map(|answer| answer[question].as_f64().expect("the peer answers with numbers"));
+            table.note(question, "pinocchio + Coal", usual, usual);
+            for (way, size) in
+                [("in process, a scene's states a request", usize::MAX), ("in process, a state a request", 1)]
+            {
+                table.note(question, way, Some(in_process(&batches, width, size, wants)), usual);
+            }
+        }
+    }
+    table.print();
+}
+
+/// States a second, in requests of at most `size` states.
+fn in_process(batches: &[Batch], width: usize, size: usize, wants: Wants) -> f64 {
+    let context = Context { wants, ..Context::default() };
+    let requests: Vec<(&Snapshot, CheckStates)> = batches
+        .iter()
+        .flat_map(|batch| {
+            let context = &context;
+            batch.positions.chunks(width.saturating_mul(size)).map(move |positions| {
+                let (robot, context) = ("ur5".to_owned(), context.clone());
+                (&*batch.snapshot, CheckStates { robot, positions: positions.to_vec(), mode: Mode::All, context })
+            })
+        })
+        .collect();
+    states_per_second(|| {
+        let answers = requests.iter().map(|(snapshot, request)| {
+            Prepared::check_states(snapshot, request).expect("the workload is in order").answer(&|| false)
+        });
+        answers.map(|answer| answer.items.len()).sum()
+    })
+}
+
+/// Repeats a pass, which returns the states it answered, for long enough to time it.
+fn states_per_second(mut pass: impl FnMut() -> usize) -> f64 {
+    let (mut states, start) = (0, Instant::now());
+    loop {
+        states += pass();
+        let seconds = start.elapsed().as_secs_f64();
+        if seconds > LEAST_TIME {
+            return states as f64 / seconds;
+        }
+    }
+}
+
+/// The peer's process; it makes one pass for each line it is sent.
+struct UsualChecker {
+    _process: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+}
+
+impl UsualChecker {
+    fn start() -> Option<Self> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let python = root.join("target/peers/bin/python");
+        if !python.exists() {
+            eprintln!("no comparison: benches/peers/setup installs pinocchio and Coal");
+            return None;
+        }
+        let mut process = Command::new(python)
+            .arg(root.join("benches/peers/usual_checker.py"))
+            .args([root.join("tests/data/robot-ur5").as_os_str(), "ur5".as_ref()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the peer's Python starts");
+        let to = process.stdin.take().expect("stdin is piped");
+        let mut from = BufReader::new(process.stdout.take().expect("stdout is piped"));
+        let mut ready = String::new();
+        from.read_line(&mut ready).expect("the peer answers");
+        Some(Self { _process: process, to, from })
+    }
+
+    fn pass(&mut self) -> serde_json::Value {
+        writeln!(self.to).expect("the peer listens");
+        let mut line = String::new();
+        self.from.read_line(&mut line).expect("the peer answers");
+        let answer: serde_json::Value = serde_json::from_str(&line).expect("the peer answers in JSON");
+        assert_eq!(answer["wrong_verdicts"], 0, "the peer is asked the same question");
+        answer
+    }
+}
+
+/// Figures of all rounds, in the order they first came.
+#[derive(Default)]
+struct Table {
+    rows: Vec<Row>,
+}
+
+struct Row {
+    question: &'static str,
+    way: &'static str,
+    per_second: Vec<f64>,
+    ratios: Vec<f64>,
+}
+
+impl Table {
+    fn note(&mut self, question: &'static str, way: &'static str, per_second: Option<f64>, usual: Option<f64>) {
+        let Some(per_second) = per_second else { return };
+        let place = self.rows.iter().position(|r| r.question == question && r.way == way).unwrap_or_else(|| {
+            self.rows.push(Row { question, way, per_second: Vec::new(), ratios: Vec::new() });
+            self.rows.len() - 1
+        });
+        self.rows[place].per_second.push(per_second);
+        self.rows[place].ratios.extend(usual.map(|usual| per_second / usual));
+    }
+
+    fn print(&mut self) {
+        println!("{:<10} {:<44} {:>12} {:>10}", "question", "way", "states/s", "ratio");
+        for row in &mut self.rows {
+            let ratio = if row.ratios.is_empty() { "-".to_owned() } else { format!("{:.2}", median(&mut row.ratios)) };
+            println!("{:<10} {:<44} {:>12.0} {ratio:>10}", row.question, row.way, median(&mut row.per_second));
+        }
+    }
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
