@@ -41,8 +41,9 @@ fn contains(outer: &Piece, inner: &Piece) -> bool {
         let point = inner_in_outer.point(point);
         mesh.bounds().contains(&Aabb { min: point, max: point }) && is_inside(mesh, point)
     };
-    match inner.shape.core() {
-        Core::Mesh(parts) => parts.parts().any(is_in),
-        core => is_convex(core) && is_in(support(core, Vec3::z())),
+    let core = inner.shape.core();
+    if let Core::Mesh(parts) = core {
+        return parts.parts().any(is_in);
     }
+    is_convex(core) && is_in(support(core, Vec3::z()))
 }

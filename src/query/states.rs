@@ -52,7 +52,7 @@ impl<'a> States<'a> {
         let model: &RobotModel = &robot.model;
         let width = model.degrees_of_freedom();
         let given = request.positions.len();
-        if if width == 0 { given > 0 } else { given % width != 0 } {
+        if !given.is_multiple_of(width) {
             let problem = format!("{given} numbers are no whole number of states of {width} positions each");
             return Err(Refused::Invalid { field: "positions".to_owned(), problem });
         }
