@@ -23,7 +23,7 @@ fn clutter() -> Scene {
         let step = |n: usize| (i * i % n) as f64 * 0.47 + (i % 4) as f64 * 0.11;
         let place = pose(step(11), step(7), step(9));
         let mut body = NewBody::new(format!("body {i}"), Arc::clone(&shapes[i % 3]), place);
-        body.groups = vec![if i % 2 == 0 { "even" } else { "odd" }.to_owned()];
+        body.groups = vec![if i.is_multiple_of(2) { "even" } else { "odd" }.to_owned()];
         Edit::AddBody(body)
     };
     let mut edits: Vec<Edit> = (0..60).map(body).collect();
