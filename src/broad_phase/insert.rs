@@ -2,8 +2,8 @@
 //!
 //! A new leaf goes where it makes the tree least dear to traverse (surface-area heuristic, one descent bounded from
 //! below: Bittner, Hapala, Havran, "Incremental BVH construction for ray tracing", 2015). On the way back up every node
-//! tries to swap a child with a grandchild (Kopta et al., "Fast, effective BVH updates for animated scenes", 2012). Where costs
-//! tie, the less tall side wins: boxes that all coincide still make a balanced tree.
+//! tries to swap a child with a grandchild (Kopta et al., "Fast, effective BVH updates for animated scenes", 2012).
+//! Where costs tie, the less tall side wins: boxes that all coincide still make a balanced tree.
 
 use super::tree::{DynamicTree, Leaf, NONE, Node, ProxyId, fattened, visit_cost};
 use crate::geometry::Aabb;
@@ -12,10 +12,10 @@ use crate::geometry::Aabb;
 /// grown by this many times its own fattening.
 const LOOSE_FATTENINGS: f64 = 4.0;
 
-/// How far the heights of two siblings may differ. A leaf is never put beside a taller node, and siblings that come farther
-/// apart are brought closer even where that costs surface: boxes nested in each other, or spaced ever wider, would
-/// otherwise make the tree a chain. At 16 the height stays below some 5 times the least possible one in the worst
-/// case, and trees of scattered boxes never feel it; at 8 large boxes (floors, walls) are pushed too far down.
+/// How far the heights of two siblings may differ. A leaf is never put beside a taller node, and siblings that come
+/// farther apart are brought closer even where that costs surface: boxes nested in each other, or spaced ever wider,
+/// would otherwise make the tree a chain. At 16 the height stays below some 5 times the least possible one in the worst
+/// case, and trees of scattered boxes never feel it; smaller pushes large boxes (floors, walls) too far down.
 const LARGEST_IMBALANCE: u32 = 16;
 
 impl DynamicTree {

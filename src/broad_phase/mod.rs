@@ -18,7 +18,6 @@ mod validate;
 mod tests;
 
 pub use health::Health;
-pub use pages::Pages;
 pub use traverse::TraversalStats;
 pub use tree::{DynamicTree, FATTENING_CAP, FATTENING_FRACTION, ProxyId};
 pub use validate::TreeDefect;

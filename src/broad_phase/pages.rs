@@ -12,32 +12,24 @@ const PAGE: usize = 64;
 
 /// An array in pages that clones share until they are written to.
 #[derive(Clone, Debug)]
-pub struct Pages<T> {
+pub(super) struct Pages<T> {
     pages: Vec<Arc<[T; PAGE]>>,
     length: usize,
 }
 
 impl<T: Clone> Pages<T> {
     /// No elements.
-    #[must_use]
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { pages: Vec::new(), length: 0 }
     }
 
     /// Number of elements.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.length
     }
 
-    /// Whether there are no elements.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.length == 0
-    }
-
     /// Appends an element; its index is the length before.
-    pub fn push(&mut self, value: T) {
+    pub(super) fn push(&mut self, value: T) {
         if self.length == self.pages.len() * PAGE {
             // The rest of a new page is filled with copies that no index reaches.
             self.pages.push(Arc::new(std::array::from_fn(|_| value.clone())));
@@ -45,18 +37,6 @@ impl<T: Clone> Pages<T> {
             Arc::make_mut(&mut self.pages[self.length / PAGE])[self.length % PAGE] = value;
         }
         self.length += 1;
-    }
-
-    /// How many pages the two versions share.
-    #[must_use]
-    pub fn shared_with(&self, other: &Self) -> usize {
-        self.pages.iter().zip(&other.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
-    }
-}
-
-impl<T: Clone> Default for Pages<T> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -71,6 +51,14 @@ impl<T> Index<u32> for Pages<T> {
 impl<T: Clone> IndexMut<u32> for Pages<T> {
     fn index_mut(&mut self, index: u32) -> &mut T {
         &mut Arc::make_mut(&mut self.pages[index as usize / PAGE])[index as usize % PAGE]
+    }
+}
+
+#[cfg(test)]
+impl<T> Pages<T> {
+    /// How many pages the two versions share.
+    pub(super) fn shared_with(&self, other: &Self) -> usize {
+        self.pages.iter().zip(&other.pages).filter(|(a, b)| Arc::ptr_eq(a, b)).count()
     }
 }
 

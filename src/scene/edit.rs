@@ -85,8 +85,8 @@ pub enum Edit {
         a: Party,
         /// The other side.
         b: Party,
-        /// `Some(true)`: the pair is not looked at. `Some(false)`: it is, whatever less specific entries say. `None`: the
-        /// entry is taken back; taking back what is not there changes nothing.
+        /// `Some(true)`: the pair is not looked at. `Some(false)`: it is, whatever less specific entries say. `None`:
+        /// the entry is taken back; taking back what is not there changes nothing.
         allowed: Option<bool>,
     },
     /// An entry of the table of margins. It replaces an earlier one of the same two parties, whichever comes first.

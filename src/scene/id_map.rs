@@ -1,7 +1,7 @@
 //! How is the content of a scene kept in many versions? By a map from ids that clones share.
 //!
-//! A radix tree of 64-way nodes: a clone is one reference count, a change copies the nodes on the way to one id (three
-//! for the first 262 144 ids), and nodes without entries are dropped, so that ids that are never used again cost nothing.
+//! A radix tree of 64-way nodes: a clone is one reference count, and a change copies the nodes on the way to one id,
+//! three for the first 262 144 ids. Nodes without entries are dropped: ids that are gone for good cost nothing.
 
 use std::array;
 use std::sync::Arc;

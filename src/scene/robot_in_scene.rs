@@ -46,8 +46,8 @@ impl RobotInScene {
         (self.first_link..).take(self.model.links().len()).map(PartyKey::link)
     }
 
-    /// What [`RobotInScene::self_pairs`] is under a matrix. That the model excludes a pair is as specific as an entry for two links:
-    /// only such an entry of the scene brings the pair back.
+    /// What [`RobotInScene::self_pairs`] is under a matrix. That the model excludes a pair is as specific as an entry
+    /// for two links: only such an entry of the scene brings the pair back.
     pub(super) fn self_pairs_under(&self, allowed: &PairTable<bool>) -> Arc<[(u32, u32)]> {
         let tested = self.model.self_pairs().iter().copied();
         let mut pairs: Vec<(u32, u32)> =

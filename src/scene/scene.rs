@@ -6,6 +6,9 @@ use std::sync::Arc;
 use super::{BodyId, Edit, Epoch, NotKept, Refusal, Revision, Snapshot};
 use crate::limits::{LimitExceeded, Limits};
 
+/// Builds with debug assertions look at every snapshot of a scene of up to so many bodies as a whole.
+const VALIDATED_BODIES: usize = 32;
+
 /// A scene and its last snapshots. One owner changes it; everybody else reads snapshots.
 #[derive(Debug)]
 pub struct Scene {
@@ -64,8 +67,8 @@ impl Scene {
 
     /// Makes all edits in their order, or none. Each is checked in the state that the earlier ones lead to.
     ///
-    /// With `expected` given, only if the scene is at that revision: compare-and-set. Every accepted list makes one revision,
-    /// an empty one too, so that a revision counts accepted lists and an empty list tells whether `expected` holds.
+    /// With `expected` given, only if the scene is at that revision: compare-and-set. Every accepted list makes one
+    /// revision, an empty one too: a revision counts accepted lists, and an empty list tells whether `expected` holds.
     ///
     /// # Errors
     /// What was wrong first: the expected revision, the number of edits, or the first edit that cannot be made, with
@@ -84,6 +87,7 @@ impl Scene {
         }
         let revision = Revision(actual.0 + 1);
         next.settle(self.latest(), revision);
+        debug_assert!(next.body_count() > VALIDATED_BODIES || next.validate() == Ok(()), "{:?}", next.validate());
         self.kept.push_back(Arc::new(next));
         while self.kept.len() > self.limits.snapshots_kept.max(1) {
             self.kept.pop_front();
