@@ -1,5 +1,6 @@
 //! `clearance`: how far apart, touching or not, which pair, where, and since when is that true.
 
+pub mod app;
 pub mod broad_phase;
 pub mod cli;
 pub mod geometry;
@@ -8,4 +9,5 @@ pub mod narrow_phase;
 pub mod query;
 pub mod robot;
 pub mod scene;
+pub mod service;
 pub mod transports;

@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 
 use super::exit_code::Exit;
 use super::pairs::{self, Pairs};
+use super::serve::{self, Serve};
 
 /// How far apart, touching or not, which pair, where: collision and distance queries as proved brackets.
 #[derive(Parser, Debug)]
@@ -20,6 +21,8 @@ struct Arguments {
 enum Command {
     /// The distance of two shapes, case by case: JSON lines in, JSON lines out.
     Pairs(Pairs),
+    /// The daemon: answers questions about scenes until it is told to end.
+    Serve(Serve),
 }
 
 /// Reads the command line, does what it says, and returns how that ended.
@@ -28,6 +31,7 @@ pub fn run() -> ExitCode {
     let mut output = io::stdout().lock();
     let ended = match Arguments::parse().command {
         Command::Pairs(arguments) => pairs::run(&arguments, &mut output),
+        Command::Serve(arguments) => return serve::run(&arguments, &mut output).into(),
     };
     let ended = ended.and_then(|()| output.flush());
     match ended {

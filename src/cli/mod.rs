@@ -5,6 +5,7 @@ mod command;
 mod exit_code;
 mod json_field;
 mod pairs;
+mod serve;
 mod words;
 
 pub use command::run;

@@ -1,4 +1,6 @@
 //! The doors: each turns what arrives into a call of [`crate::service`] and its answer into what leaves.
 
 #[cfg(feature = "grpc")]
+pub mod grpc;
+#[cfg(feature = "grpc")]
 pub mod wire;

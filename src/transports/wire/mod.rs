@@ -1,3 +1,5 @@
 //! The messages of `proto/clearance/v1`, and what they mean in plain structs.
 
+pub mod from_proto;
+pub mod to_proto;
 pub mod v1;

@@ -1,0 +1,31 @@
+//! One writer for each scene, readers on a pool of threads, and everything a caller may run into: caps, deadlines,
+//! revisions that are gone or still to come.
+//!
+//! [`Service`] is what the doors call. It knows neither protobuf nor sockets.
+
+mod admission;
+mod assets;
+mod deadline;
+mod error;
+mod library;
+mod remembered_keys;
+mod revision_rule;
+mod robots;
+mod scene_cell;
+mod scenes;
+#[expect(clippy::module_inception, reason = "the service of the floor `service`")]
+mod service;
+mod view;
+mod workers;
+
+pub use assets::{ContentHash, NotAHash, Stored, Upload};
+pub use deadline::Patience;
+pub use error::ServiceError;
+pub use library::{Library, MeshReading, UnusableMesh};
+pub use remembered_keys::IdempotencyKey;
+pub use revision_rule::{RevisionRule, Rule};
+pub use robots::{LoadedRobot, RobotDescription, Robots};
+pub use scene_cell::Change;
+pub use scenes::SceneSummary;
+pub use service::{Changed, Config, Door, Service, Target};
+pub use view::View;

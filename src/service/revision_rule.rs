@@ -1,0 +1,77 @@
+//! Which state of a scene is asked, and is it there?
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::ServiceError;
+use crate::scene::{Epoch, Revision, Snapshot};
+
+/// Which revision may answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rule {
+    /// The newest when the question is looked at.
+    #[default]
+    Latest,
+    /// This one.
+    Exactly(Revision),
+    /// This one or a newer.
+    AtLeast(Revision),
+}
+
+/// Which epoch and revision may answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RevisionRule {
+    /// The epoch the caller means; `None`: any.
+    pub epoch: Option<Epoch>,
+    /// The revision.
+    pub rule: Rule,
+}
+
+/// The revisions that can be asked, oldest first. Never empty.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    snapshots: VecDeque<Arc<Snapshot>>,
+}
+
+impl Kept {
+    pub fn new(first: Arc<Snapshot>) -> Self {
+        Self { snapshots: VecDeque::from([first]) }
+    }
+
+    /// The same with one more, and without those that are then too many.
+    pub fn with(&self, next: Arc<Snapshot>, kept: usize) -> Self {
+        let mut snapshots = self.snapshots.clone();
+        snapshots.push_back(next);
+        while snapshots.len() > kept.max(1) {
+            snapshots.pop_front();
+        }
+        Self { snapshots }
+    }
+
+    pub fn oldest(&self) -> &Arc<Snapshot> {
+        self.snapshots.front().expect("there is always one revision")
+    }
+
+    pub fn latest(&self) -> &Arc<Snapshot> {
+        self.snapshots.back().expect("there is always one revision")
+    }
+
+    /// The snapshot that fits, or `None` if it is still to come.
+    ///
+    /// # Errors
+    /// It is gone.
+    pub fn find(&self, rule: Rule) -> Result<Option<&Arc<Snapshot>>, ServiceError> {
+        let latest = self.latest();
+        match rule {
+            Rule::Latest => Ok(Some(latest)),
+            Rule::AtLeast(asked) => Ok((latest.revision() >= asked).then_some(latest)),
+            Rule::Exactly(asked) => {
+                let oldest = self.oldest().revision();
+                if asked < oldest {
+                    return Err(ServiceError::RevisionGone { asked, oldest });
+                }
+                Ok(self.snapshots.iter().find(|snapshot| snapshot.revision() == asked))
+            }
+        }
+    }
+}

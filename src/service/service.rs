@@ -1,0 +1,260 @@
+//! What do the doors call? One [`Service`] for all of them: it admits, finds the snapshot, keeps the time, and hands
+//! the work to threads. It knows neither messages nor sockets.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::ServiceError;
+use super::admission::Admission;
+use super::assets::{ContentHash, Stored, Upload};
+use super::deadline::{Deadline, Patience, Stop};
+use super::library::Library;
+use super::revision_rule::RevisionRule;
+use super::robots::{LoadedRobot, RobotDescription, Robots};
+use super::scene_cell::Change;
+use super::scenes::{SceneSummary, Scenes};
+use super::view::View;
+use super::workers::{Workers, prepare};
+use crate::limits::Limits;
+use crate::scene::{Applied, Epoch, Revision};
+
+/// What a service is made with.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Config {
+    /// Threads that answer questions; 0: one for each core.
+    pub threads: usize,
+    /// Its caps.
+    pub limits: Limits,
+}
+
+/// One way to ask the daemon.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Door {
+    /// For example `grpc`.
+    pub kind: &'static str,
+    /// For example `127.0.0.1:50551`.
+    pub address: String,
+}
+
+/// The scene that is asked, and in which state.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Target {
+    /// The scene's name.
+    pub scene: String,
+    /// Which revision may answer.
+    pub revision: RevisionRule,
+}
+
+/// A change that was made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Changed {
+    /// Of the scene.
+    pub epoch: Epoch,
+    /// The revision that contains the change, and what it added.
+    pub applied: Applied,
+}
+
+/// The daemon without its doors.
+#[derive(Debug)]
+pub struct Service {
+    limits: Limits,
+    workers: Workers,
+    library: Arc<Library>,
+    robots: Arc<Robots>,
+    scenes: Scenes,
+    queries: Admission,
+    loads: Admission,
+    doors: Mutex<Vec<Door>>,
+    draining: AtomicBool,
+}
+
+impl Service {
+    /// A service without scenes, robots or files.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn new(config: &Config) -> Result<Arc<Self>, rayon::ThreadPoolBuildError> {
+        let limits = &config.limits;
+        let loads = Admission::new("max_uploads_in_flight", limits.max_uploads_in_flight);
+        Ok(Arc::new(Self {
+            limits: limits.clone(),
+            workers: Workers::new(config.threads)?,
+            library: Arc::new(Library::new(limits, loads.clone())),
+            robots: Arc::new(Robots::new(limits)),
+            scenes: Scenes::new(limits),
+            queries: Admission::new("max_queries_in_flight", limits.max_queries_in_flight),
+            loads,
+            doors: Mutex::default(),
+            draining: AtomicBool::new(false),
+        }))
+    }
+
+    /// The caps.
+    #[must_use]
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Files and the shapes made of them.
+    #[must_use]
+    pub fn library(&self) -> &Arc<Library> {
+        &self.library
+    }
+
+    /// Robot models.
+    #[must_use]
+    pub fn robots(&self) -> &Arc<Robots> {
+        &self.robots
+    }
+
+    /// Threads that answer questions.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.workers.threads()
+    }
+
+    /// Questions being answered.
+    #[must_use]
+    pub fn queries_in_flight(&self) -> usize {
+        self.queries.under_way()
+    }
+
+    /// The open doors.
+    #[must_use]
+    pub fn doors(&self) -> Vec<Door> {
+        self.doors.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// A door is open from now on.
+    pub fn add_door(&self, door: Door) {
+        self.doors.lock().unwrap_or_else(PoisonError::into_inner).push(door);
+    }
+
+    /// From now on every new request is refused; those under way are answered.
+    pub fn begin_drain(&self) {
+        self.draining.store(true, Ordering::Release);
+    }
+
+    /// A new, empty scene.
+    ///
+    /// # Errors
+    /// The name cannot be or is taken, or there are too many scenes.
+    pub fn create_scene(&self, name: &str) -> Result<SceneSummary, ServiceError> {
+        self.check_open()?;
+        self.scenes.create(name)
+    }
+
+    /// All scenes, in the order of their names.
+    #[must_use]
+    pub fn scenes(&self) -> Vec<SceneSummary> {
+        self.scenes.list()
+    }
+
+    /// A scene is gone; questions being answered are still answered.
+    ///
+    /// # Errors
+    /// It is not there.
+    pub fn delete_scene(&self, name: &str) -> Result<SceneSummary, ServiceError> {
+        self.check_open()?;
+        self.scenes.delete(name)
+    }
+
+    /// The oldest revision of a scene that can be asked.
+    ///
+    /// # Errors
+    /// The scene is not there.
+    pub fn oldest_revision(&self, scene: &str) -> Result<Revision, ServiceError> {
+        Ok(self.scenes.get(scene)?.oldest_revision())
+    }
+
+    /// Changes a scene, after the changes that came before. `change` is worked out on a thread of its own first; it may
+    /// read meshes and build hulls.
+    ///
+    /// # Errors
+    /// What `change` says, a scene that is not there, a queue that is full, a deadline that came first, or the refusal.
+    pub async fn apply(
+        &self,
+        scene: &str,
+        patience: Patience,
+        change: impl FnOnce() -> Result<Change, ServiceError> + Send + 'static,
+    ) -> Result<Changed, ServiceError> {
+        self.check_open()?;
+        let deadline = self.deadline(patience)?;
+        let cell = self.scenes.get(scene)?;
+        let turn = cell.queue()?;
+        let (stop, _waiting) = Stop::at(deadline);
+        let change = prepare(change).await?;
+        let applied = cell.apply(change, stop, turn).await?;
+        Ok(Changed { epoch: cell.epoch(), applied })
+    }
+
+    /// Begins an upload.
+    ///
+    /// # Errors
+    /// The daemon drains, or a cap.
+    pub fn begin_upload(&self, hash: ContentHash, bytes: u64) -> Result<Upload, ServiceError> {
+        self.check_open()?;
+        self.library.assets().begin_upload(hash, bytes)
+    }
+
+    /// Checks and keeps what was uploaded.
+    ///
+    /// # Errors
+    /// It is not what was announced.
+    pub async fn finish_upload(&self, upload: Upload) -> Result<Stored, ServiceError> {
+        prepare(move || upload.finish()).await
+    }
+
+    /// Loads a robot. `description` is worked out on the same thread.
+    ///
+    /// # Errors
+    /// What `description` says, a cap, or a description that makes no robot.
+    pub async fn load_robot(
+        &self,
+        description: impl FnOnce() -> Result<RobotDescription, ServiceError> + Send + 'static,
+    ) -> Result<LoadedRobot, ServiceError> {
+        self.check_open()?;
+        let permit = self.loads.enter()?;
+        let (robots, library) = (Arc::clone(&self.robots), Arc::clone(&self.library));
+        prepare(move || {
+            let _permit = permit;
+            robots.load(&description()?, library.assets())
+        })
+        .await
+    }
+
+    /// Asks a scene. `question` runs on the threads that answer questions; dropping the future stops it.
+    ///
+    /// # Errors
+    /// What `question` says, a scene or revision that is not there, a cap, or a deadline that came first.
+    pub async fn ask<T: Send + 'static>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+    ) -> Result<T, ServiceError> {
+        self.check_open()?;
+        let permit = self.queries.enter()?;
+        let deadline = self.deadline(patience)?;
+        let snapshot = self.scenes.get(&target.scene)?.snapshot(target.revision, deadline).await?;
+        let (stop, _waiting) = Stop::at(deadline);
+        let view = View::new(snapshot, stop.clone(), &self.limits);
+        self.workers
+            .answer(move || {
+                // Given back only now: a question whose caller is gone keeps its place until its thread is free.
+                let _permit = permit;
+                if stop.now() { Err(ServiceError::DeadlineExceeded) } else { question(&view) }
+            })
+            .await
+    }
+
+    fn check_open(&self) -> Result<(), ServiceError> {
+        if self.draining.load(Ordering::Acquire) { Err(ServiceError::ShuttingDown) } else { Ok(()) }
+    }
+
+    fn deadline(&self, patience: Patience) -> Result<Deadline, ServiceError> {
+        let longest = Duration::from_secs(self.limits.max_deadline_seconds as u64);
+        Deadline::new(Instant::now(), patience, longest)
+    }
+}

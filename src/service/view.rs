@@ -1,0 +1,96 @@
+//! One question on its way: a pinned snapshot, the moment to stop, and the batch split over threads.
+//!
+//! Parts are joined in the order of their items, so an answer is the same bytes for any number of threads.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::ServiceError;
+use super::deadline::Stop;
+use crate::limits::{LimitExceeded, Limits};
+use crate::query::{Answer, CheckStates, Context, PairQuery, Part, Prepared, Verdict};
+use crate::scene::Snapshot;
+
+/// A snapshot that is being asked. It exists only on the threads that answer questions.
+#[derive(Debug)]
+pub struct View {
+    snapshot: Arc<Snapshot>,
+    stop: Stop,
+    limits: Limits,
+}
+
+/// Items that one thread takes at a time, at least: fewer cost more in handing over than they gain.
+const SMALLEST_PART: usize = 8;
+/// Parts for each thread, so that one slow part does not leave the others idle.
+const PARTS_PER_THREAD: usize = 4;
+
+impl View {
+    pub(super) fn new(snapshot: Arc<Snapshot>, stop: Stop, limits: &Limits) -> Self {
+        Self { snapshot, stop, limits: limits.clone() }
+    }
+
+    /// What is asked.
+    #[must_use]
+    pub fn snapshot(&self) -> &Arc<Snapshot> {
+        &self.snapshot
+    }
+
+    /// # Errors
+    /// A cap, a question that cannot be asked, or a deadline that came before any answer.
+    pub fn check_states(&self, question: &CheckStates) -> Result<Answer, ServiceError> {
+        LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
+        self.answer(&Prepared::check_states(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
+        LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
+        self.answer(&Prepared::collide(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
+        LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
+        self.answer(&Prepared::distance(&self.snapshot, question)?, &question.context)
+    }
+
+    fn answer(&self, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
+        LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
+        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
+        let parts: Vec<Part> = split(question.len()).into_par_iter().map(run).collect();
+        let answer = question.join(parts);
+        let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);
+        if answer.out_of_time && nothing {
+            return Err(ServiceError::DeadlineExceeded);
+        }
+        Ok(answer)
+    }
+}
+
+/// Ranges of items that follow one another.
+fn split(items: usize) -> Vec<Range<usize>> {
+    let parts = PARTS_PER_THREAD * rayon::current_num_threads();
+    let size = items.div_ceil(parts).max(SMALLEST_PART);
+    (0..items).step_by(size).map(|first| first..(first + size).min(items)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_cover_the_items_in_order() {
+        assert!(split(0).is_empty());
+        for items in [1, 7, 8, 9, 100, 4096] {
+            let parts = split(items);
+            assert_eq!(parts[0].start, 0);
+            assert_eq!(parts[parts.len() - 1].end, items);
+            assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Where is work done? Questions on a pool of threads of their own, everything else that takes long (parsing, building
+//! trees, changing a scene) on the runtime's blocking threads. Callers wait without holding a thread.
+//!
+//! A panic in either is caught, logged under a number, and becomes [`ServiceError::Internal`]: the daemon goes on.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use tokio::sync::oneshot;
+
+use super::ServiceError;
+
+/// Threads that answer questions.
+#[derive(Debug)]
+pub struct Workers {
+    pool: ThreadPool,
+}
+
+impl Workers {
+    /// `threads` of them; 0 means one for each core.
+    ///
+    /// # Errors
+    /// The system gives no more threads.
+    pub fn new(threads: usize) -> Result<Self, ThreadPoolBuildError> {
+        let pool =
+            ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("query-{index}")).build()?;
+        Ok(Self { pool })
+    }
+
+    /// How many threads there are.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// Does `work` on the pool, where it may split itself with rayon.
+    ///
+    /// # Errors
+    /// What `work` says, or [`ServiceError::Internal`] if it panics.
+    pub async fn answer<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
+    ) -> Result<T, ServiceError> {
+        let (sender, receiver) = oneshot::channel();
+        // Whether somebody still waits for the result is not the work's concern.
+        self.pool.spawn(move || drop(sender.send(caught(work))));
+        receiver.await.unwrap_or_else(|_| Err(incident("a worker ended without a result")))
+    }
+}
+
+/// Does `work` on a thread that may take its time.
+///
+/// # Errors
+/// What `work` says, or [`ServiceError::Internal`] if it panics.
+pub async fn prepare<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
+) -> Result<T, ServiceError> {
+    match tokio::task::spawn_blocking(move || caught(work)).await {
+        Ok(result) => result,
+        Err(_) => Err(ServiceError::ShuttingDown), // Panics are caught above, so the runtime is going down.
+    }
+}
+
+/// Nothing that outlives a panic is shared with it but immutable snapshots and values behind locks that notice.
+pub(super) fn caught<T>(work: impl FnOnce() -> Result<T, ServiceError>) -> Result<T, ServiceError> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|panic| Err(incident(text_of(panic.as_ref()))))
+}
+
+/// Logs a defect under a number that the caller is told.
+pub(super) fn incident(what: &str) -> ServiceError {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    let incident = NEXT.fetch_add(1, Ordering::Relaxed);
+    tracing::error!(incident, "defect while answering a request: {what}");
+    ServiceError::Internal { incident }
+}
+
+fn text_of(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("a panic without a text")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_panic_is_an_internal_error_and_the_pool_goes_on() {
+        let workers = Workers::new(1).unwrap();
+        let defect = workers.answer(|| -> Result<(), _> { panic!("out of cheese") }).await;
+        assert!(matches!(defect, Err(ServiceError::Internal { .. })), "{defect:?}");
+        assert_eq!(workers.answer(|| Ok(2 + 2)).await, Ok(4));
+        let defect = prepare(|| -> Result<(), _> { panic!("{} of {}", "out", "cheese") }).await;
+        assert!(matches!(defect, Err(ServiceError::Internal { .. })), "{defect:?}");
+    }
+}

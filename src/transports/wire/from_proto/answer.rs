@@ -1,0 +1,107 @@
+//! Answers, as a client reads them.
+
+use crate::geometry::Vec3;
+use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
+use crate::scene::{BodyId, Epoch, Revision};
+use crate::transports::wire::v1;
+
+/// A message that is no answer: a field is missing, or a number stands for nothing this version knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the answer's field `{0}` is missing or unknown to this version")]
+pub struct NotAnAnswer(&'static str);
+
+/// An answer in the form of items.
+///
+/// # Errors
+/// [`NotAnAnswer`].
+pub fn answer(message: &v1::Answer) -> Result<Answer, NotAnAnswer> {
+    Ok(Answer {
+        epoch: Epoch(message.epoch),
+        revision: Revision(message.revision),
+        items: message.items.iter().map(item).collect::<Result<_, _>>()?,
+        stopped_at: message.stopped_at.map(|index| index as usize),
+        out_of_time: message.out_of_time,
+        cost: cost(message.cost)?,
+    })
+}
+
+fn item(item: &v1::ItemAnswer) -> Result<ItemAnswer, NotAnAnswer> {
+    Ok(ItemAnswer {
+        verdict: verdict(item.verdict, item.indeterminacy)?,
+        nearest: item.nearest.as_ref().map(pair).transpose()?,
+        nearest_self: item.nearest_self.as_ref().map(pair).transpose()?,
+        nearest_scene: item.nearest_scene.as_ref().map(pair).transpose()?,
+        pairs: item.pairs.iter().map(pair).collect::<Result<_, _>>()?,
+        problem: (!item.problem.is_empty()).then(|| item.problem.clone()),
+        truncated: item.truncated,
+        cost: cost(item.cost)?,
+    })
+}
+
+fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
+    let bracket = pair.bracket.ok_or(NotAnAnswer("bracket"))?;
+    Ok(PairAnswer {
+        a: side(pair.a.as_ref())?,
+        b: side(pair.b.as_ref())?,
+        verdict: verdict(pair.verdict, pair.indeterminacy)?,
+        bracket: Bracket { lower: bracket.lower, upper: bracket.upper },
+        signed_distance: pair.signed_distance,
+        witness: pair.witness.as_ref().map(witness).transpose()?,
+        termination: termination(pair.termination)?,
+    })
+}
+
+fn side(side: Option<&v1::Side>) -> Result<Side, NotAnAnswer> {
+    let kind = side.and_then(|side| side.kind.as_ref()).ok_or(NotAnAnswer("side"))?;
+    Ok(match *kind {
+        v1::side::Kind::Link(v1::LinkSide { link, shape, subshape }) => Side::Link { link, shape, subshape },
+        v1::side::Kind::Query(v1::QuerySide { subshape }) => Side::Query { subshape },
+        v1::side::Kind::Body(v1::BodySide { id, subshape }) => Side::Body { id: BodyId(id), subshape },
+    })
+}
+
+fn verdict(number: i32, why: i32) -> Result<Verdict, NotAnAnswer> {
+    match v1::Verdict::try_from(number) {
+        Ok(v1::Verdict::Free) => Ok(Verdict::Free),
+        Ok(v1::Verdict::Margin) => Ok(Verdict::Margin),
+        Ok(v1::Verdict::Collision) => Ok(Verdict::Collision),
+        Ok(v1::Verdict::Indeterminate) => indeterminacy(why).map(Verdict::Indeterminate),
+        Ok(v1::Verdict::NotRun) => Ok(Verdict::NotRun),
+        Ok(v1::Verdict::InvalidInput) => Ok(Verdict::InvalidInput),
+        Ok(v1::Verdict::Unspecified) | Err(_) => Err(NotAnAnswer("verdict")),
+    }
+}
+
+fn indeterminacy(number: i32) -> Result<Indeterminacy, NotAnAnswer> {
+    match v1::Indeterminacy::try_from(number) {
+        Ok(v1::Indeterminacy::Rounding) => Ok(Indeterminacy::Rounding),
+        Ok(v1::Indeterminacy::IterationLimit) => Ok(Indeterminacy::IterationLimit),
+        Ok(v1::Indeterminacy::Unspecified) | Err(_) => Err(NotAnAnswer("indeterminacy")),
+    }
+}
+
+fn termination(number: i32) -> Result<Termination, NotAnAnswer> {
+    match v1::Termination::try_from(number) {
+        Ok(v1::Termination::ClosedForm) => Ok(Termination::ClosedForm),
+        Ok(v1::Termination::Converged) => Ok(Termination::Converged),
+        Ok(v1::Termination::Decided) => Ok(Termination::Decided),
+        Ok(v1::Termination::RoundingFloor) => Ok(Termination::RoundingFloor),
+        Ok(v1::Termination::IterationLimit) => Ok(Termination::IterationLimit),
+        Ok(v1::Termination::Unspecified) | Err(_) => Err(NotAnAnswer("termination")),
+    }
+}
+
+fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
+    let vec3 = |v: &Option<v1::Vec3>| v.map(|v| Vec3::new(v.x, v.y, v.z)).ok_or(NotAnAnswer("witness"));
+    Ok(Witness {
+        point_on_a: vec3(&witness.point_on_a)?,
+        point_on_b: vec3(&witness.point_on_b)?,
+        normal: vec3(&witness.normal)?,
+    })
+}
+
+fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
+    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = cost.ok_or(NotAnAnswer("cost"))?;
+    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs })
+}

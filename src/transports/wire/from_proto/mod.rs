@@ -1,0 +1,16 @@
+//! What does a message mean? Every conversion from messages to plain structs. Total: whatever the bytes, the outcome is
+//! a checked value or an error that names the field.
+
+mod answer;
+mod geometry;
+mod path;
+mod query;
+mod robot;
+mod scene;
+
+pub use answer::{NotAnAnswer, answer};
+pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
+pub use robot::robot_description;
+pub use scene::change;
+
+use path::Path;

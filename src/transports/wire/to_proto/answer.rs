@@ -1,0 +1,150 @@
+//! Answers to questions.
+
+use super::count;
+use super::geometry::vec3;
+use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
+use crate::transports::wire::from_proto::AnswerForm;
+use crate::transports::wire::v1;
+
+/// An answer in the form that was asked for.
+#[must_use]
+pub fn answer(answer: &Answer, form: AnswerForm) -> v1::Answer {
+    match form {
+        AnswerForm::Items => v1::Answer { items: answer.items.iter().map(item).collect(), ..frame(answer) },
+        AnswerForm::Bulk => v1::Answer { bulk: Some(bulk(&answer.items)), ..frame(answer) },
+    }
+}
+
+/// What an answer says of the request as a whole.
+fn frame(answer: &Answer) -> v1::Answer {
+    v1::Answer {
+        epoch: answer.epoch.0,
+        revision: answer.revision.0,
+        items: Vec::new(),
+        bulk: None,
+        stopped_at: answer.stopped_at.map(count),
+        out_of_time: answer.out_of_time,
+        cost: Some(cost(answer.cost)),
+    }
+}
+
+fn item(item: &ItemAnswer) -> v1::ItemAnswer {
+    let (verdict, indeterminacy) = verdict(item.verdict);
+    v1::ItemAnswer {
+        verdict: verdict.into(),
+        indeterminacy: indeterminacy.into(),
+        nearest: item.nearest.as_ref().map(pair),
+        nearest_self: item.nearest_self.as_ref().map(pair),
+        nearest_scene: item.nearest_scene.as_ref().map(pair),
+        pairs: item.pairs.iter().map(pair).collect(),
+        truncated: item.truncated,
+        problem: item.problem.clone().unwrap_or_default(),
+        cost: Some(cost(item.cost)),
+    }
+}
+
+fn bulk(items: &[ItemAnswer]) -> v1::BulkAnswer {
+    // Verdicts and reasons are small enumerations; their numbers fit a byte.
+    let (verdicts, indeterminacies): (Vec<u8>, Vec<u8>) =
+        items.iter().map(|item| verdict(item.verdict)).map(|(verdict, why)| (verdict as u8, why as u8)).unzip();
+    let problem = |(index, item): (usize, &ItemAnswer)| {
+        item.problem.clone().map(|problem| v1::BulkProblem { item: count(index), problem })
+    };
+    v1::BulkAnswer {
+        verdicts: verdicts.into(),
+        indeterminacies: indeterminacies.into(),
+        nearest: bulk_brackets(items, |item| item.nearest.as_ref()),
+        nearest_self: bulk_brackets(items, |item| item.nearest_self.as_ref()),
+        nearest_scene: bulk_brackets(items, |item| item.nearest_scene.as_ref()),
+        problems: items.iter().enumerate().filter_map(problem).collect(),
+    }
+}
+
+/// One column of brackets; none when no item has that pair.
+fn bulk_brackets(
+    items: &[ItemAnswer],
+    pair_of: impl Fn(&ItemAnswer) -> Option<&PairAnswer>,
+) -> Option<v1::BulkBrackets> {
+    items.iter().any(|item| pair_of(item).is_some()).then(|| {
+        let column = |number: fn(&PairAnswer) -> f64| {
+            let numbers = items.iter().map(|item| pair_of(item).map_or(f64::NAN, number));
+            numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>().into()
+        };
+        v1::BulkBrackets {
+            lower: column(|pair| pair.bracket.lower),
+            upper: column(|pair| pair.bracket.upper),
+            signed_distance: column(|pair| pair.signed_distance),
+        }
+    })
+}
+
+fn pair(pair: &PairAnswer) -> v1::PairAnswer {
+    let (verdict, indeterminacy) = verdict(pair.verdict);
+    v1::PairAnswer {
+        a: Some(side(&pair.a)),
+        b: Some(side(&pair.b)),
+        verdict: verdict.into(),
+        indeterminacy: indeterminacy.into(),
+        bracket: Some(bracket(pair.bracket)),
+        signed_distance: pair.signed_distance,
+        witness: pair.witness.as_ref().map(witness),
+        termination: termination(pair.termination).into(),
+    }
+}
+
+fn side(side: &Side) -> v1::Side {
+    let kind = match *side {
+        Side::Link { link, shape, subshape } => v1::side::Kind::Link(v1::LinkSide { link, shape, subshape }),
+        Side::Query { subshape } => v1::side::Kind::Query(v1::QuerySide { subshape }),
+        Side::Body { id, subshape } => v1::side::Kind::Body(v1::BodySide { id: id.0, subshape }),
+    };
+    v1::Side { kind: Some(kind) }
+}
+
+/// A verdict and, if it is none, why.
+fn verdict(verdict: Verdict) -> (v1::Verdict, v1::Indeterminacy) {
+    let decided = |verdict| (verdict, v1::Indeterminacy::Unspecified);
+    match verdict {
+        Verdict::Free => decided(v1::Verdict::Free),
+        Verdict::Margin => decided(v1::Verdict::Margin),
+        Verdict::Collision => decided(v1::Verdict::Collision),
+        Verdict::Indeterminate(why) => (v1::Verdict::Indeterminate, indeterminacy(why)),
+        Verdict::NotRun => decided(v1::Verdict::NotRun),
+        Verdict::InvalidInput => decided(v1::Verdict::InvalidInput),
+    }
+}
+
+fn indeterminacy(why: Indeterminacy) -> v1::Indeterminacy {
+    match why {
+        Indeterminacy::Rounding => v1::Indeterminacy::Rounding,
+        Indeterminacy::IterationLimit => v1::Indeterminacy::IterationLimit,
+    }
+}
+
+fn termination(termination: Termination) -> v1::Termination {
+    match termination {
+        Termination::ClosedForm => v1::Termination::ClosedForm,
+        Termination::Converged => v1::Termination::Converged,
+        Termination::Decided => v1::Termination::Decided,
+        Termination::RoundingFloor => v1::Termination::RoundingFloor,
+        Termination::IterationLimit => v1::Termination::IterationLimit,
+    }
+}
+
+fn witness(witness: &Witness) -> v1::Witness {
+    v1::Witness {
+        point_on_a: Some(vec3(witness.point_on_a)),
+        point_on_b: Some(vec3(witness.point_on_b)),
+        normal: Some(vec3(witness.normal)),
+    }
+}
+
+fn bracket(bracket: Bracket) -> v1::Bracket {
+    v1::Bracket { lower: bracket.lower, upper: bracket.upper }
+}
+
+fn cost(cost: Cost) -> v1::Cost {
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = cost;
+    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs }
+}
