@@ -11,7 +11,7 @@ use super::outcome::{Cost, Separation, Termination};
 use super::polytope::Polytope;
 use super::support::radius;
 use crate::geometry::tolerance::UNSCALED_EXTENT;
-use crate::geometry::{Core, Placement, Vec3};
+use crate::geometry::{Core, Placement};
 
 /// A convex, bounded core in its place, with the radius of the ball swept over it.
 #[derive(Clone, Copy)]
@@ -23,8 +23,8 @@ pub(super) struct Convex<'a> {
     pub placement_error: f64,
 }
 
-/// What is known about A and B when the goal is reached. `hint`: a direction from B to A, world frame, to start from.
-pub(super) fn separation(a: Convex, b: Convex, hint: Option<Vec3>, goal: &Goal) -> Separation {
+/// What is known about A and B when the goal is reached.
+pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     let b_in_a = Placement::relative(a.at, b.at);
     let extent = radius(a.core) + radius(b.core) + b_in_a.translation.norm();
     let scale = scale_of(extent);
@@ -34,13 +34,12 @@ pub(super) fn separation(a: Convex, b: Convex, hint: Option<Vec3>, goal: &Goal) 
     let difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
-    let hint = hint.map(|h| a.at.direction_into(h));
-    let found = solve(&difference, &target, hint, &mut cost);
+    let found = solve(&difference, &target, &mut cost);
     place(&found, a, &target, &difference, cost)
 }
 
-fn solve(difference: &Difference, target: &Target, hint: Option<Vec3>, cost: &mut Cost) -> Epa {
-    let found = gjk(difference, target, hint, cost);
+fn solve(difference: &Difference, target: &Target, cost: &mut Cost) -> Epa {
+    let found = gjk(difference, target, cost);
     let stopped = |termination| known(&found, termination);
     // Two errors, one from each end of the bracket, are as near as they can come.
     let at_floor = found.upper - found.lower <= 4.0 * difference.error;

@@ -52,10 +52,10 @@ pub(super) enum End {
     Limit,
 }
 
-/// Runs GJK on `difference`, from `hint` (a direction from the origin to the difference) if there is one.
-pub(super) fn gjk(difference: &Difference, target: &Target, hint: Option<Vec3>, cost: &mut Cost) -> Gjk {
+/// Runs GJK on `difference`, starting between the centres.
+pub(super) fn gjk(difference: &Difference, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
-    let mut direction = hint.or_else(|| unit(difference.centers())).unwrap_or_else(Vec3::x);
+    let mut direction = unit(difference.centers()).unwrap_or_else(Vec3::x);
     let first = difference.lowest(direction);
     cost.supports += 1;
     let mut best = Gjk {

@@ -35,7 +35,7 @@ pub fn separation(
     if is_convex(a.core()) && is_convex(b.core()) {
         let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
         let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
-        return Ok(convex::separation(one, other, None, goal));
+        return Ok(convex::separation(one, other, goal));
     }
     let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
     let (pieces_a, pieces_b) = (pieces(a, &own_frame), pieces(b, &Placement::relative(at_a, at_b)));

@@ -108,7 +108,7 @@ pub(super) fn simple_pair(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separatio
         (Some(_), Some(_)) => None,
         (None, Some(wall)) => Some(unbounded::separation(whole(a), wall)),
         (Some(wall), None) => Some(swapped(unbounded::separation(whole(b), wall))),
-        (None, None) => Some(convex::separation(whole(a), whole(b), None, goal)),
+        (None, None) => Some(convex::separation(whole(a), whole(b), goal)),
     }
 }
 
