@@ -1,7 +1,8 @@
 //! States of a robot checked in a second: in process, through gRPC, and by the usual checker in the same run.
 //!
 //! `cargo bench --bench states`, after `benches/peers/setup` for the comparison. The workload is the UR5 of `tests/data`:
-//! 400 states in 21 scenes. All run on one core, in turn, round after round; a figure is the median over the rounds, a
+//! 400 states in 21 scenes. All run in turn, round after round, each on one core (`taskset -c 0 cargo bench ...` keeps the
+//! daemon and its client on the same one); a figure is the median over the rounds, a
 //! ratio the median of the rounds' ratios, so that a machine that slows down slows both sides.
 
 #[path = "../tests/query/workload.rs"]
@@ -13,8 +14,14 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
 
+use clearance::app::{Daemon, GrpcSettings, Settings};
+use clearance::geometry::Pose;
 use clearance::query::{CheckStates, Context, Mode, Prepared, Wants};
-use clearance::scene::Snapshot;
+use clearance::robot::{LinkOptions, MeshUse, ModelOptions, mesh_files};
+use clearance::scene::{NewBody, Snapshot};
+use clearance::service::{RobotDescription, Target};
+use clearance::transports::grpc::{Client, RemoteEdit};
+use tokio::runtime::Runtime;
 
 const ROUNDS: usize = 7;
 
@@ -42,6 +49,7 @@ fn main() {
             Batch { snapshot: Arc::clone(snapshot), positions: own.flat_map(|(_, q, _)| q.clone()).collect() }
         })
         .collect();
+    let grpc = Grpc::start(&scenes);
     let mut peer = UsualChecker::start();
     let mut table = Table::default();
     for _ in 0..ROUNDS {
@@ -53,6 +61,9 @@ fn main() {
                 [("in process, a scene's states a request", usize::MAX), ("in process, a state a request", 1)]
             {
                 table.note(question, way, Some(in_process(&batches, width, size, wants)), usual);
+            }
+            for (way, size) in [("gRPC, 1 a request", 1), ("gRPC, 64 a request", 64), ("gRPC, 1024 a request", 1024)] {
+                table.note(question, way, Some(grpc.ask(&batches, width, size, wants)), usual);
             }
         }
     }
@@ -78,6 +89,76 @@ fn in_process(batches: &[Batch], width: usize, size: usize, wants: Wants) -> f64
         });
         answers.map(|answer| answer.items.len()).sum()
     })
+}
+
+/// A daemon with one thread for questions, on loopback in this process, and a client of it.
+struct Grpc {
+    runtime: Runtime,
+    client: Client,
+}
+
+impl Grpc {
+    fn start(scenes: &[Arc<Snapshot>]) -> Self {
+        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("threads are to be had");
+        let client = runtime.block_on(async {
+            let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), insecure: None };
+            let config = Settings { threads: Some(1), grpc, ..Settings::default() }.resolve().expect("defaults hold");
+            let daemon = Daemon::build(&config).await.expect("a port is free");
+            let address = daemon.doors()[0].address.to_string();
+            tokio::spawn(daemon.run(std::future::pending()));
+            let client = Client::connect(&address).await.expect("the daemon listens");
+            build_scenes(&client, scenes).await;
+            client
+        });
+        Self { runtime, client }
+    }
+
+    /// States a second, in requests of `size` states; a scene's states are repeated to fill them.
+    fn ask(&self, batches: &[Batch], width: usize, size: usize, wants: Wants) -> f64 {
+        let context = Context { wants, ..Context::default() };
+        let requests: Vec<(Target, CheckStates)> = batches
+            .iter()
+            .enumerate()
+            .map(|(scene, batch)| {
+                let target = Target { scene: scene.to_string(), ..Target::default() };
+                let positions = batch.positions.iter().copied().cycle().take(size * width).collect();
+                let (robot, context) = ("ur5".to_owned(), context.clone());
+                (target, CheckStates { robot, positions, mode: Mode::All, context })
+            })
+            .collect();
+        let mut turn = requests.iter().cycle();
+        states_per_second(|| {
+            let (target, request) = turn.next().expect("a cycle has no end");
+            let answer = self.runtime.block_on(self.client.check_states(target, request)).expect("the daemon answers");
+            answer.items.len()
+        })
+    }
+}
+
+/// The robot and the scenes of the workload, in the daemon.
+async fn build_scenes(client: &Client, scenes: &[Arc<Snapshot>]) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/robot-ur5");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect("the workload is there");
+    let urdf = read("ur5.urdf");
+    let mut meshes = std::collections::BTreeMap::new();
+    for name in mesh_files(&urdf).expect("the workload is in order") {
+        let bytes = std::fs::read(folder.join(name.trim_start_matches("package://ur5/"))).expect("the mesh is there");
+        meshes.insert(name, client.put_asset(&bytes).await.expect("the daemon takes it"));
+    }
+    let options = ModelOptions::uniform(LinkOptions { mesh: MeshUse::Hull, ..LinkOptions::default() });
+    let description = RobotDescription { urdf, srdf: Some(read("ur5.srdf")), meshes, options };
+    let robot = client.load_robot(&description).await.expect("the robot is in order");
+    for (i, snapshot) in scenes.iter().enumerate() {
+        let scene = i.to_string();
+        client.create_scene(&scene).await.expect("the name is free");
+        let model = robot.id.clone();
+        let arm = RemoteEdit::AddRobot { name: "ur5".to_owned(), model, base: Pose::identity() };
+        let bodies = snapshot
+            .bodies()
+            .map(|body| RemoteEdit::AddBody(NewBody::new(body.name.to_string(), Arc::clone(&body.shape), body.pose)));
+        let edits: Vec<RemoteEdit> = std::iter::once(arm).chain(bodies).collect();
+        client.apply(&scene, &edits).await.expect("the scene is in order");
+    }
 }
 
 /// Repeats a pass, which returns the states it answered, for long enough to time it.
