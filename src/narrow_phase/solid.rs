@@ -2,8 +2,8 @@
 
 use super::outcome::{Bracket, Separation};
 use super::support::{is_convex, support};
-use super::union::{Piece, deepest_possible, is_inside};
-use crate::geometry::{Aabb, Core, Placement, Vec3};
+use super::union::{Piece, deepest_possible};
+use crate::geometry::{Aabb, Core, Placement, TriangleMesh, Vec3};
 
 /// The separation of the surfaces, corrected where one piece is wholly inside another that is solid.
 ///
@@ -46,4 +46,18 @@ fn contains(outer: &Piece, inner: &Piece) -> bool {
         return parts.parts().any(is_in);
     }
     is_convex(core) && is_in(support(core, Vec3::z()))
+}
+
+/// Whether a point, in the mesh's frame and not on its surface, is inside a solid mesh: by the sum of the solid angles
+/// of its triangles (van Oosterom and Strackee 1983), which is 4 pi inside and 0 outside.
+fn is_inside(mesh: &TriangleMesh, point: Vec3) -> bool {
+    let solid_angle = |i: usize| {
+        let [a, b, c] = mesh.triangle(i).map(|v| v - point);
+        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        let volume = a.dot(&b.cross(&c));
+        let denominator = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        2.0 * libm::atan2(volume, denominator)
+    };
+    let total: f64 = (0..mesh.triangles().len()).map(solid_angle).sum();
+    total > 2.0 * std::f64::consts::PI
 }

@@ -321,17 +321,3 @@ fn node_distance(a: &Side, na: usize, b: &Side, nb: usize, b_in_a: &Placement) -
 fn size_of(b: &Aabb) -> f64 {
     b.min.abs().sup(&b.max.abs()).amax()
 }
-
-/// Whether a point, in the mesh's frame and not on its surface, is inside a solid mesh: by the sum of the solid angles
-/// of its triangles (van Oosterom and Strackee 1983), which is 4 pi inside and 0 outside.
-pub(super) fn is_inside(mesh: &TriangleMesh, point: Vec3) -> bool {
-    let solid_angle = |i: usize| {
-        let [a, b, c] = mesh.triangle(i).map(|v| v - point);
-        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
-        let volume = a.dot(&b.cross(&c));
-        let denominator = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-        2.0 * libm::atan2(volume, denominator)
-    };
-    let total: f64 = (0..mesh.triangles().len()).map(solid_angle).sum();
-    total > 2.0 * std::f64::consts::PI
-}
