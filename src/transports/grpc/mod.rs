@@ -17,3 +17,4 @@ mod status;
 
 pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
 pub use door::{BindError, Config, Listening};
+pub use status::status_of;

@@ -8,7 +8,8 @@ use crate::service::ServiceError;
 use crate::transports::wire::v1::ErrorReason;
 
 /// The status of an error.
-pub(super) fn status_of(error: &ServiceError) -> Status {
+#[must_use]
+pub fn status_of(error: &ServiceError) -> Status {
     let (code, reason) = code_of(error);
     let name = reason.as_str_name();
     let mut metadata = MetadataMap::new();

@@ -1,0 +1,33 @@
+//! What every door has to do. Each behaviour is written once, over [`Door`], and run through all of them.
+
+mod assets;
+mod bad_input;
+mod caps;
+mod questions;
+mod revisions;
+mod robots;
+mod scenes;
+
+/// Makes a test of each behaviour for each door.
+macro_rules! through_every_door {
+    ($($behaviour:ident),* $(,)?) => {
+        mod in_process {
+            $(#[tokio::test(flavor = "multi_thread")]
+            async fn $behaviour() {
+                use crate::support::{door::{Door, InProcess}, watchdog::watched};
+                let door = InProcess::open(super::limits()).await;
+                watched(stringify!($behaviour), super::$behaviour(&door)).await;
+            })*
+        }
+        mod grpc {
+            $(#[tokio::test(flavor = "multi_thread")]
+            async fn $behaviour() {
+                use crate::support::{door::{Door, Grpc}, watchdog::watched};
+                let door = Grpc::open(super::limits()).await;
+                watched(stringify!($behaviour), super::$behaviour(&door)).await;
+            })*
+        }
+    };
+}
+
+use through_every_door;

@@ -1,0 +1,147 @@
+//! Scenes and changes of them.
+
+use clearance::limits::Limits;
+use clearance::transports::wire::v1;
+use tonic::Code;
+
+use super::through_every_door;
+use crate::support::door::Door;
+use crate::support::messages::*;
+
+through_every_door!(
+    removed_body_is_not_reported,
+    moved_body_is_reported_where_it_is,
+    refused_edit_changes_nothing,
+    compare_and_set_lost_is_aborted,
+    wrong_epoch_is_refused,
+    repeated_change_with_its_key_is_made_once,
+    deleted_scene_is_not_found,
+    second_scene_of_a_name_is_refused,
+    unknown_bodies_are_named,
+    allowed_pair_is_not_reported,
+);
+
+fn limits() -> Limits {
+    Limits::default()
+}
+
+async fn two_balls(door: &impl Door) -> v1::ApplyResponse {
+    door.create_scene(SCENE).await.unwrap();
+    let balls = vec![add("left", sphere(0.5), at(0.0, 0.0, 0.0)), add("right", sphere(0.5), at(0.8, 0.0, 0.0))];
+    door.apply(apply(balls)).await.unwrap()
+}
+
+async fn removed_body_is_not_reported(door: &impl Door) {
+    let made = two_balls(door).await;
+    assert_eq!((made.revision, made.added.len()), (1, 2));
+    let answer = door.collide(collide(vec![all_pairs()])).await.unwrap();
+    assert_eq!(verdicts(&answer), [v1::Verdict::Collision]);
+    assert_eq!((answer.epoch, answer.revision), (made.epoch, 1));
+    door.apply(apply(vec![remove(numbered(made.added[1]))])).await.unwrap();
+    let answer = door.collide(collide(vec![all_pairs()])).await.unwrap();
+    assert_eq!(verdicts(&answer), [v1::Verdict::Free]);
+    assert_eq!((answer.revision, answer.items[0].pairs.len()), (2, 0));
+}
+
+async fn moved_body_is_reported_where_it_is(door: &impl Door) {
+    two_balls(door).await;
+    let moved = door.apply(apply(vec![move_to(named("right"), at(3.0, 0.0, 0.0))])).await.unwrap();
+    let answer = door.distance(distance(vec![body(named("left"))])).await.unwrap();
+    assert_eq!(answer.revision, moved.revision);
+    let bracket = answer.items[0].nearest.as_ref().unwrap().bracket.unwrap();
+    assert!(bracket.lower <= 2.0 && 2.0 <= bracket.upper && bracket.upper - bracket.lower < 1e-8, "{bracket:?}");
+}
+
+async fn refused_edit_changes_nothing(door: &impl Door) {
+    two_balls(door).await;
+    let before = door.get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None }).await.unwrap();
+    let edits = vec![add("third", sphere(0.1), at(9.0, 0.0, 0.0)), remove(named("left")), remove(named("nobody"))];
+    let refusal = door.apply(apply(edits)).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::FailedPrecondition, "EDIT_REFUSED"));
+    assert_eq!(refusal.field, "edits[2].body", "{refusal:?}");
+    let after = door.get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None }).await.unwrap();
+    assert_eq!(before, after);
+    assert_eq!(after.bodies.iter().map(|body| body.name.as_str()).collect::<Vec<_>>(), ["left", "right"]);
+}
+
+async fn compare_and_set_lost_is_aborted(door: &impl Door) {
+    two_balls(door).await;
+    let expecting = |revision| v1::ApplyRequest {
+        expected_revision: Some(revision),
+        ..apply(vec![move_to(named("left"), at(0.0, 1.0, 0.0))])
+    };
+    let refusal = door.apply(expecting(0)).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::Aborted, "REVISION_MOVED_ON"));
+    assert_eq!(door.apply(expecting(1)).await.unwrap().revision, 2);
+}
+
+async fn wrong_epoch_is_refused(door: &impl Door) {
+    let made = two_balls(door).await;
+    let asked = |epoch| v1::RevisionRule { epoch: Some(epoch), rule: None };
+    let of_epoch = |epoch| v1::Context { revision: Some(asked(epoch)), ..context() };
+    let question = |epoch| v1::CollideRequest { context: Some(of_epoch(epoch)), ..collide(vec![all_pairs()]) };
+    let refusal = door.collide(question(made.epoch + 1)).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::FailedPrecondition, "WRONG_EPOCH"));
+    assert!(door.collide(question(made.epoch)).await.is_ok());
+    let change = v1::ApplyRequest { expected_epoch: Some(made.epoch + 1), ..apply(vec![remove(named("left"))]) };
+    assert_eq!(door.apply(change).await.unwrap_err().reason, "WRONG_EPOCH");
+}
+
+async fn repeated_change_with_its_key_is_made_once(door: &impl Door) {
+    two_balls(door).await;
+    let change = v1::ApplyRequest {
+        idempotency_key: "k1".to_owned(),
+        expected_revision: Some(1),
+        ..apply(vec![add("third", sphere(0.1), at(9.0, 0.0, 0.0))])
+    };
+    let first = door.apply(change.clone()).await.unwrap();
+    assert_eq!(door.apply(change.clone()).await.unwrap(), first);
+    let other = v1::ApplyRequest { edits: vec![remove(named("left"))], ..change };
+    let refusal = door.apply(other).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::InvalidArgument, "KEY_REUSED"));
+}
+
+async fn deleted_scene_is_not_found(door: &impl Door) {
+    let made = two_balls(door).await;
+    assert_eq!(door.delete_scene(SCENE).await.unwrap().bodies, 2);
+    for refusal in [
+        door.delete_scene(SCENE).await.unwrap_err(),
+        door.collide(collide(vec![all_pairs()])).await.unwrap_err(),
+        door.apply(apply(vec![remove(named("left"))])).await.unwrap_err(),
+    ] {
+        assert_eq!((refusal.code, refusal.reason.as_str()), (Code::NotFound, "NOT_FOUND"), "{refusal:?}");
+    }
+    let again = door.create_scene(SCENE).await.unwrap();
+    assert!(again.epoch > made.epoch && again.revision == 0);
+}
+
+async fn second_scene_of_a_name_is_refused(door: &impl Door) {
+    door.create_scene(SCENE).await.unwrap();
+    let refusal = door.create_scene(SCENE).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::AlreadyExists, "ALREADY_EXISTS"));
+    assert_eq!(door.create_scene("").await.unwrap_err().code, Code::InvalidArgument);
+}
+
+async fn unknown_bodies_are_named(door: &impl Door) {
+    two_balls(door).await;
+    let refusal = door.distance(distance(vec![all_pairs(), body(named("nobody"))])).await.unwrap_err();
+    assert_eq!(refusal.code, Code::NotFound);
+    assert!(refusal.message.contains("nobody"), "{refusal:?}");
+}
+
+async fn allowed_pair_is_not_reported(door: &impl Door) {
+    two_balls(door).await;
+    let party = |name| Some(v1::Party { kind: Some(v1::party::Kind::Body(named(name))) });
+    let entry = |allowed| {
+        edit(v1::edit::Kind::SetAllowedCollision(v1::SetAllowedCollision {
+            a: party("left"),
+            b: party("right"),
+            allowed,
+        }))
+    };
+    door.apply(apply(vec![entry(Some(true))])).await.unwrap();
+    let question = collide(vec![all_pairs()]);
+    assert_eq!(verdicts(&door.collide(question.clone()).await.unwrap()), [v1::Verdict::Free]);
+    door.apply(apply(vec![entry(None)])).await.unwrap();
+    assert_eq!(verdicts(&door.collide(question).await.unwrap()), [v1::Verdict::Collision]);
+}

@@ -1,0 +1,7 @@
+//! The daemon from outside: every behaviour written once and run through every door, then what only a socket or a
+//! process can show. Nothing here waits without a watchdog, and nothing asserts how fast an answer comes.
+
+mod conformance;
+mod connections;
+mod process;
+mod support;
