@@ -120,6 +120,14 @@ impl<'a> Field<'a> {
         Ok(Vec3::new(x.number()?, y.number()?, z.number()?))
     }
 
+    /// A list of numbers.
+    ///
+    /// # Errors
+    /// This is no list of numbers.
+    pub fn numbers(&self) -> Found<Vec<f64>> {
+        self.elements()?.iter().map(Field::number).collect()
+    }
+
     /// A list of triples of numbers.
     ///
     /// # Errors

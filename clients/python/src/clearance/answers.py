@@ -1,0 +1,229 @@
+"""Answers as plain objects and numpy arrays. Metres, world frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .v1 import geometry_pb2 as geometry
+from .v1 import query_pb2 as messages
+
+
+class Verdict(IntEnum):
+    """What a bracket decides."""
+
+    FREE = messages.VERDICT_FREE
+    MARGIN = messages.VERDICT_MARGIN
+    COLLISION = messages.VERDICT_COLLISION
+    INDETERMINATE = messages.VERDICT_INDETERMINATE
+    NOT_RUN = messages.VERDICT_NOT_RUN
+    INVALID_INPUT = messages.VERDICT_INVALID_INPUT
+
+
+@dataclass(frozen=True)
+class Applied:
+    """What became of some edits."""
+
+    epoch: int
+    #: The revision that contains them.
+    revision: int
+    #: Ids of the bodies that were added, in the order of their edits.
+    added: tuple[int, ...]
+    #: What was strange, but could be done.
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What the work cost, as counters."""
+
+    supports: int
+    gjk_iterations: int
+    epa_iterations: int
+    nodes: int
+    pairs: int
+
+    @classmethod
+    def of(cls, cost: messages.Cost) -> Cost:
+        return cls(cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs)
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a pair: a link of the robot, a body of the scene, or the bare shape of the question."""
+
+    #: `link`, `body` or `query`.
+    kind: str
+    #: Index of the link in `Robot.links`, or id of the body.
+    id: Optional[int]
+    #: Triangle of a mesh or part of a compound; 0 for a single convex shape.
+    subshape: int
+
+    @classmethod
+    def of(cls, side: messages.Side) -> Side:
+        kind = side.WhichOneof("kind")
+        if kind == "link":
+            return cls("link", side.link.link, side.link.subshape)
+        if kind == "body":
+            return cls("body", side.body.id, side.body.subshape)
+        return cls("query", None, side.query.subshape)
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """A proved interval: the signed distance is, in the truth, in `lower..upper`."""
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class PairAnswer:
+    """What is known about one pair."""
+
+    a: Side
+    b: Side
+    verdict: Verdict
+    bracket: Bracket
+    #: Best estimate inside the bracket; negative: minus the depth.
+    signed_distance: float
+    #: `point_on_b - point_on_a = signed_distance * normal`; None where no witness was wanted.
+    point_on_a: Optional[NDArray[np.float64]]
+    point_on_b: Optional[NDArray[np.float64]]
+    #: Unit vector from A to B.
+    normal: Optional[NDArray[np.float64]]
+    #: How the work stopped, for example `CONVERGED`.
+    termination: str
+
+    @classmethod
+    def of(cls, pair: messages.PairAnswer) -> PairAnswer:
+        witness = pair.witness if pair.HasField("witness") else None
+        return cls(
+            a=Side.of(pair.a),
+            b=Side.of(pair.b),
+            verdict=Verdict(pair.verdict),
+            bracket=Bracket(pair.bracket.lower, pair.bracket.upper),
+            signed_distance=pair.signed_distance,
+            point_on_a=_array(witness.point_on_a) if witness else None,
+            point_on_b=_array(witness.point_on_b) if witness else None,
+            normal=_array(witness.normal) if witness else None,
+            termination=messages.Termination.Name(pair.termination).removeprefix("TERMINATION_"),
+        )
+
+
+@dataclass(frozen=True)
+class ItemAnswer:
+    """The answer to one state or subject."""
+
+    verdict: Verdict
+    #: The pair of least signed distance, or of a verdict alone the pair that decided.
+    nearest: Optional[PairAnswer]
+    #: Of states: the nearest pair of two links, and of a link and a body.
+    nearest_self: Optional[PairAnswer]
+    nearest_scene: Optional[PairAnswer]
+    #: Pairs that collide, cannot be decided or are within the margin.
+    pairs: tuple[PairAnswer, ...]
+    #: There were more pairs than the limit lets through.
+    truncated: bool
+    #: Of `INVALID_INPUT`: which field, and what is wrong with it.
+    problem: str
+    cost: Cost
+
+    @classmethod
+    def of(cls, item: messages.ItemAnswer) -> ItemAnswer:
+        def pair(name: str) -> Optional[PairAnswer]:
+            return PairAnswer.of(getattr(item, name)) if item.HasField(name) else None
+
+        return cls(
+            verdict=Verdict(item.verdict),
+            nearest=pair("nearest"),
+            nearest_self=pair("nearest_self"),
+            nearest_scene=pair("nearest_scene"),
+            pairs=tuple(PairAnswer.of(each) for each in item.pairs),
+            truncated=item.truncated,
+            problem=item.problem,
+            cost=Cost.of(item.cost),
+        )
+
+
+@dataclass(frozen=True)
+class Brackets:
+    """Brackets of all items of a batch as arrays; NaN where an item has no such pair."""
+
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+    signed_distance: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, brackets: messages.BulkBrackets, count: int) -> Brackets:
+        def numbers(data: bytes) -> NDArray[np.float64]:
+            return np.frombuffer(data, dtype="<f8") if data else np.full(count, np.nan)
+
+        return cls(numbers(brackets.lower), numbers(brackets.upper), numbers(brackets.signed_distance))
+
+
+@dataclass(frozen=True)
+class StatesAnswer:
+    """The answer to a batch of a robot's states, one element a state."""
+
+    epoch: int
+    #: The state of the scene that was asked.
+    revision: int
+    #: Numbers of `Verdict`.
+    verdicts: NDArray[np.uint8]
+    #: Of the nearest pair at all, of two links, of a link and a body; NaN unless distances were wanted.
+    nearest: Brackets
+    nearest_self: Brackets
+    nearest_scene: Brackets
+    #: Of states that are `INVALID_INPUT`: which field, and what is wrong with it.
+    problems: dict[int, str]
+    #: With stop at first: the state that stopped the batch.
+    stopped_at: Optional[int]
+    #: Time ran out; states not looked at are `NOT_RUN`.
+    out_of_time: bool
+    cost: Cost = field(repr=False)
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Which states are proved to be free."""
+        return self.verdicts == Verdict.FREE
+
+    @property
+    def lower(self) -> NDArray[np.float64]:
+        """Lower ends of the brackets of the nearest pairs."""
+        return self.nearest.lower
+
+    @property
+    def upper(self) -> NDArray[np.float64]:
+        """Upper ends of the brackets of the nearest pairs."""
+        return self.nearest.upper
+
+    @property
+    def signed_distance(self) -> NDArray[np.float64]:
+        """Best estimates inside the brackets of the nearest pairs."""
+        return self.nearest.signed_distance
+
+    @classmethod
+    def of(cls, answer: messages.Answer) -> StatesAnswer:
+        bulk = answer.bulk
+        count = len(bulk.verdicts)
+        return cls(
+            epoch=answer.epoch,
+            revision=answer.revision,
+            verdicts=np.frombuffer(bulk.verdicts, dtype=np.uint8),
+            nearest=Brackets.of(bulk.nearest, count),
+            nearest_self=Brackets.of(bulk.nearest_self, count),
+            nearest_scene=Brackets.of(bulk.nearest_scene, count),
+            problems={each.item: each.problem for each in bulk.problems},
+            stopped_at=answer.stopped_at if answer.HasField("stopped_at") else None,
+            out_of_time=answer.out_of_time,
+            cost=Cost.of(answer.cost),
+        )
+
+
+def _array(v: geometry.Vec3) -> NDArray[np.float64]:
+    return np.array([v.x, v.y, v.z])

@@ -1,0 +1,98 @@
+"""What can go wrong with a request. Geometry never does: it is a verdict."""
+
+from __future__ import annotations
+
+import re
+from contextlib import contextmanager
+from typing import Iterator, Optional
+
+import grpc
+
+
+class ClearanceError(Exception):
+    """A request was refused or could not be delivered.
+
+    The daemon says which part of the request it means; whatever it did not say is None.
+    """
+
+    def __init__(self, code: str, message: str, details: dict[str, str]):
+        super().__init__(message)
+        #: gRPC's name of the kind of error, for example `INVALID_ARGUMENT`.
+        self.code = code
+        #: The reason for programs, for example `INVALID_FIELD`; see `ErrorReason` in service.proto.
+        self.reason: Optional[str] = details.get("clearance-reason")
+        #: The field that cannot be as it is, for example `items[3].shape.box.half_extents.x`.
+        self.field: Optional[str] = details.get("clearance-field")
+        #: Of a list of edits, subjects or the like: which element the field is in.
+        self.item: Optional[int] = _item(self.field)
+        #: The cap that was hit, how much was asked, how much is allowed.
+        self.limit: Optional[str] = details.get("clearance-limit")
+        self.asked: Optional[int] = _number(details.get("clearance-asked"))
+        self.allowed: Optional[int] = _number(details.get("clearance-allowed"))
+        #: The scene as it is now, where it is not as was expected.
+        self.epoch: Optional[int] = _number(details.get("clearance-epoch"))
+        self.revision: Optional[int] = _number(details.get("clearance-revision"))
+        self.oldest_revision: Optional[int] = _number(details.get("clearance-oldest-revision"))
+
+
+class InvalidRequest(ClearanceError):
+    """A field cannot be as it is; `field` and `item` say which."""
+
+
+class NotFound(ClearanceError):
+    """A scene, body, robot, model, asset or group is not there."""
+
+
+class Conflict(ClearanceError):
+    """The scene is not as the request needs it: a taken name, an edit that does not fit, another revision or epoch."""
+
+
+class RevisionGone(ClearanceError):
+    """The revision asked for is not kept any more, or a message was too large for the connection."""
+
+
+class LimitExceeded(ClearanceError):
+    """A cap of the daemon; `limit`, `asked` and `allowed` say which."""
+
+
+class DeadlineExceeded(ClearanceError):
+    """Nothing could be answered in time."""
+
+
+class Unavailable(ClearanceError):
+    """No daemon there, one that shuts down, or a revision that did not come in time."""
+
+
+_KINDS: dict[grpc.StatusCode, type[ClearanceError]] = {
+    grpc.StatusCode.INVALID_ARGUMENT: InvalidRequest,
+    grpc.StatusCode.NOT_FOUND: NotFound,
+    grpc.StatusCode.ALREADY_EXISTS: Conflict,
+    grpc.StatusCode.FAILED_PRECONDITION: Conflict,
+    grpc.StatusCode.ABORTED: Conflict,
+    grpc.StatusCode.OUT_OF_RANGE: RevisionGone,
+    grpc.StatusCode.RESOURCE_EXHAUSTED: LimitExceeded,
+    grpc.StatusCode.DEADLINE_EXCEEDED: DeadlineExceeded,
+    grpc.StatusCode.UNAVAILABLE: Unavailable,
+}
+
+
+@contextmanager
+def translated() -> Iterator[None]:
+    """Turns gRPC's errors into those of this module."""
+    try:
+        yield
+    except grpc.RpcError as error:
+        code = error.code()
+        metadata = error.trailing_metadata() or ()
+        details = {str(entry[0]): entry[1] for entry in metadata if isinstance(entry[1], str)}
+        kind = _KINDS.get(code, ClearanceError)
+        raise kind(code.name, f"{code.name}: {error.details()}", details) from None
+
+
+def _item(field: Optional[str]) -> Optional[int]:
+    found = re.match(r"\w+\[(\d+)\]", field or "")
+    return int(found.group(1)) if found else None
+
+
+def _number(text: Optional[str]) -> Optional[int]:
+    return int(text) if text is not None and text.isdecimal() else None

@@ -1,0 +1,115 @@
+"""Shapes in their own frames, as messages. Sizes in metres; they may be zero, and touching collides.
+
+Every shape may be grown by a ball: `ball_swept(box([1, 1, 1]), 0.1)`.
+"""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .poses import Vector, vec3
+from .v1 import geometry_pb2 as geometry
+from .v1.geometry_pb2 import Shape
+
+MESH_MODES = {
+    "exact": geometry.MESH_MODE_EXACT,
+    "hull": geometry.MESH_MODE_HULL,
+    "solid": geometry.MESH_MODE_SOLID,
+}
+
+
+def mesh_mode(name: str) -> geometry.MeshMode:
+    """`exact` (the surface), `hull` (the convex hull) or `solid` (the surface and its inside)."""
+    if name not in MESH_MODES:
+        raise ValueError(f"mode: is {name!r}, known are {', '.join(MESH_MODES)}")
+    return MESH_MODES[name]
+
+
+def sphere(radius: float) -> Shape:
+    return Shape(sphere=geometry.Sphere(radius=radius))
+
+
+def point() -> Shape:
+    return Shape(point=geometry.Point())
+
+
+def box(half_extents: Vector) -> Shape:
+    """`|x| <= half_extents[0]`, and so for y and z."""
+    return Shape(box=geometry.Box(half_extents=vec3("half_extents", half_extents)))
+
+
+def capsule(radius: float, half_length: float) -> Shape:
+    """A ball swept along the axis z; `half_length` is that of the core segment."""
+    return Shape(capsule=geometry.Capsule(radius=radius, half_length=half_length))
+
+
+def cylinder(radius: float, half_length: float) -> Shape:
+    """Axis z, centred."""
+    return Shape(cylinder=geometry.Cylinder(radius=radius, half_length=half_length))
+
+
+def cone(radius: float, half_length: float) -> Shape:
+    """Axis z: apex at `half_length`, base disc at `-half_length`."""
+    return Shape(cone=geometry.Cone(radius=radius, half_length=half_length))
+
+
+def ellipsoid(radii: Vector) -> Shape:
+    """Semi-axes along x, y, z."""
+    return Shape(ellipsoid=geometry.Ellipsoid(radii=vec3("radii", radii)))
+
+
+def convex(points: ArrayLike) -> Shape:
+    """The convex hull of `points`, shape (n, 3)."""
+    return Shape(convex=geometry.Convex(points=_points("points", points)))
+
+
+def mesh(vertices: ArrayLike, triangles: ArrayLike, mode: str = "exact") -> Shape:
+    """Triangles as indices of vertices, shape (m, 3), counter-clockwise from outside. `mode`: see :func:`mesh_mode`."""
+    indices = np.asarray(triangles)
+    if indices.ndim != 2 or indices.shape[1] != 3 or not np.issubdtype(indices.dtype, np.integer):
+        raise ValueError(f"triangles: needs integers of shape (m, 3), has {indices.dtype} of shape {indices.shape}")
+    if indices.size and indices.min() < 0:
+        raise ValueError("triangles: an index is negative")
+    message = geometry.Mesh(vertices=_points("vertices", vertices), triangles=indices.ravel(), mode=mesh_mode(mode))
+    return Shape(mesh=message)
+
+
+def compound(parts: Sequence[tuple[Shape, geometry.Pose]]) -> Shape:
+    """The union of placed shapes."""
+    return Shape(compound=geometry.Compound(parts=[geometry.Part(shape=s, pose=p) for s, p in parts]))
+
+
+def segment(a: Vector, b: Vector) -> Shape:
+    return Shape(segment=geometry.Segment(a=vec3("a", a), b=vec3("b", b)))
+
+
+def triangle(a: Vector, b: Vector, c: Vector) -> Shape:
+    return Shape(triangle=geometry.Triangle(a=vec3("a", a), b=vec3("b", b), c=vec3("c", c)))
+
+
+def half_space(normal: Vector, offset: float) -> Shape:
+    """The solid `normal . x <= offset`."""
+    return Shape(half_space=geometry.HalfSpace(normal=vec3("normal", normal), offset=offset))
+
+
+def plane(normal: Vector, offset: float) -> Shape:
+    """The thin, two-sided `normal . x = offset`."""
+    return Shape(plane=geometry.Plane(normal=vec3("normal", normal), offset=offset))
+
+
+def ball_swept(shape: Shape, radius: float) -> Shape:
+    """The shape grown by a ball of `radius` metres, rounded at corners and edges."""
+    grown = Shape()
+    grown.CopyFrom(shape)
+    grown.swept_radius += radius
+    return grown
+
+
+def _points(name: str, values: ArrayLike) -> list[geometry.Vec3]:
+    array = np.asarray(values, dtype=float)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name}: needs shape (n, 3), has {array.shape}")
+    return [geometry.Vec3(x=x, y=y, z=z) for x, y, z in array.tolist()]

@@ -1,0 +1,248 @@
+from clearance.v1 import query_pb2 as _query_pb2
+from clearance.v1 import robot_pb2 as _robot_pb2
+from clearance.v1 import scene_pb2 as _scene_pb2
+from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
+from google.protobuf import descriptor as _descriptor
+from google.protobuf import message as _message
+from collections.abc import Iterable as _Iterable, Mapping as _Mapping
+from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
+
+DESCRIPTOR: _descriptor.FileDescriptor
+
+class ErrorReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    ERROR_REASON_UNSPECIFIED: _ClassVar[ErrorReason]
+    ERROR_REASON_INVALID_FIELD: _ClassVar[ErrorReason]
+    ERROR_REASON_NOT_FOUND: _ClassVar[ErrorReason]
+    ERROR_REASON_ALREADY_EXISTS: _ClassVar[ErrorReason]
+    ERROR_REASON_EDIT_REFUSED: _ClassVar[ErrorReason]
+    ERROR_REASON_WRONG_EPOCH: _ClassVar[ErrorReason]
+    ERROR_REASON_REVISION_MOVED_ON: _ClassVar[ErrorReason]
+    ERROR_REASON_REVISION_GONE: _ClassVar[ErrorReason]
+    ERROR_REASON_REVISION_NOT_YET: _ClassVar[ErrorReason]
+    ERROR_REASON_LIMIT_EXCEEDED: _ClassVar[ErrorReason]
+    ERROR_REASON_DEADLINE_EXCEEDED: _ClassVar[ErrorReason]
+    ERROR_REASON_HASH_MISMATCH: _ClassVar[ErrorReason]
+    ERROR_REASON_SHUTTING_DOWN: _ClassVar[ErrorReason]
+    ERROR_REASON_INTERNAL: _ClassVar[ErrorReason]
+    ERROR_REASON_KEY_REUSED: _ClassVar[ErrorReason]
+ERROR_REASON_UNSPECIFIED: ErrorReason
+ERROR_REASON_INVALID_FIELD: ErrorReason
+ERROR_REASON_NOT_FOUND: ErrorReason
+ERROR_REASON_ALREADY_EXISTS: ErrorReason
+ERROR_REASON_EDIT_REFUSED: ErrorReason
+ERROR_REASON_WRONG_EPOCH: ErrorReason
+ERROR_REASON_REVISION_MOVED_ON: ErrorReason
+ERROR_REASON_REVISION_GONE: ErrorReason
+ERROR_REASON_REVISION_NOT_YET: ErrorReason
+ERROR_REASON_LIMIT_EXCEEDED: ErrorReason
+ERROR_REASON_DEADLINE_EXCEEDED: ErrorReason
+ERROR_REASON_HASH_MISMATCH: ErrorReason
+ERROR_REASON_SHUTTING_DOWN: ErrorReason
+ERROR_REASON_INTERNAL: ErrorReason
+ERROR_REASON_KEY_REUSED: ErrorReason
+
+class CreateSceneRequest(_message.Message):
+    __slots__ = ("name",)
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    def __init__(self, name: _Optional[str] = ...) -> None: ...
+
+class CreateSceneResponse(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: _scene_pb2.SceneSummary
+    def __init__(self, scene: _Optional[_Union[_scene_pb2.SceneSummary, _Mapping]] = ...) -> None: ...
+
+class ListScenesRequest(_message.Message):
+    __slots__ = ()
+    def __init__(self) -> None: ...
+
+class ListScenesResponse(_message.Message):
+    __slots__ = ("scenes",)
+    SCENES_FIELD_NUMBER: _ClassVar[int]
+    scenes: _containers.RepeatedCompositeFieldContainer[_scene_pb2.SceneSummary]
+    def __init__(self, scenes: _Optional[_Iterable[_Union[_scene_pb2.SceneSummary, _Mapping]]] = ...) -> None: ...
+
+class GetSceneRequest(_message.Message):
+    __slots__ = ("scene", "revision")
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    REVISION_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    revision: _query_pb2.RevisionRule
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[_query_pb2.RevisionRule, _Mapping]] = ...) -> None: ...
+
+class GetSceneResponse(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: _scene_pb2.SceneContents
+    def __init__(self, scene: _Optional[_Union[_scene_pb2.SceneContents, _Mapping]] = ...) -> None: ...
+
+class DeleteSceneRequest(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    def __init__(self, scene: _Optional[str] = ...) -> None: ...
+
+class DeleteSceneResponse(_message.Message):
+    __slots__ = ("scene",)
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    scene: _scene_pb2.SceneSummary
+    def __init__(self, scene: _Optional[_Union[_scene_pb2.SceneSummary, _Mapping]] = ...) -> None: ...
+
+class ApplyRequest(_message.Message):
+    __slots__ = ("scene", "edits", "expected_epoch", "expected_revision", "idempotency_key")
+    SCENE_FIELD_NUMBER: _ClassVar[int]
+    EDITS_FIELD_NUMBER: _ClassVar[int]
+    EXPECTED_EPOCH_FIELD_NUMBER: _ClassVar[int]
+    EXPECTED_REVISION_FIELD_NUMBER: _ClassVar[int]
+    IDEMPOTENCY_KEY_FIELD_NUMBER: _ClassVar[int]
+    scene: str
+    edits: _containers.RepeatedCompositeFieldContainer[_scene_pb2.Edit]
+    expected_epoch: int
+    expected_revision: int
+    idempotency_key: str
+    def __init__(self, scene: _Optional[str] = ..., edits: _Optional[_Iterable[_Union[_scene_pb2.Edit, _Mapping]]] = ..., expected_epoch: _Optional[int] = ..., expected_revision: _Optional[int] = ..., idempotency_key: _Optional[str] = ...) -> None: ...
+
+class ApplyResponse(_message.Message):
+    __slots__ = ("epoch", "revision", "added", "warnings")
+    EPOCH_FIELD_NUMBER: _ClassVar[int]
+    REVISION_FIELD_NUMBER: _ClassVar[int]
+    ADDED_FIELD_NUMBER: _ClassVar[int]
+    WARNINGS_FIELD_NUMBER: _ClassVar[int]
+    epoch: int
+    revision: int
+    added: _containers.RepeatedScalarFieldContainer[int]
+    warnings: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., added: _Optional[_Iterable[int]] = ..., warnings: _Optional[_Iterable[str]] = ...) -> None: ...
+
+class HasAssetsRequest(_message.Message):
+    __slots__ = ("sha256",)
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    sha256: _containers.RepeatedScalarFieldContainer[str]
+    def __init__(self, sha256: _Optional[_Iterable[str]] = ...) -> None: ...
+
+class HasAssetsResponse(_message.Message):
+    __slots__ = ("present",)
+    PRESENT_FIELD_NUMBER: _ClassVar[int]
+    present: _containers.RepeatedScalarFieldContainer[bool]
+    def __init__(self, present: _Optional[_Iterable[bool]] = ...) -> None: ...
+
+class PutAssetRequest(_message.Message):
+    __slots__ = ("header", "chunk")
+    HEADER_FIELD_NUMBER: _ClassVar[int]
+    CHUNK_FIELD_NUMBER: _ClassVar[int]
+    header: AssetHeader
+    chunk: bytes
+    def __init__(self, header: _Optional[_Union[AssetHeader, _Mapping]] = ..., chunk: _Optional[bytes] = ...) -> None: ...
+
+class AssetHeader(_message.Message):
+    __slots__ = ("sha256", "bytes")
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    BYTES_FIELD_NUMBER: _ClassVar[int]
+    sha256: str
+    bytes: int
+    def __init__(self, sha256: _Optional[str] = ..., bytes: _Optional[int] = ...) -> None: ...
+
+class PutAssetResponse(_message.Message):
+    __slots__ = ("sha256", "bytes", "already_present")
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    BYTES_FIELD_NUMBER: _ClassVar[int]
+    ALREADY_PRESENT_FIELD_NUMBER: _ClassVar[int]
+    sha256: str
+    bytes: int
+    already_present: bool
+    def __init__(self, sha256: _Optional[str] = ..., bytes: _Optional[int] = ..., already_present: bool = ...) -> None: ...
+
+class LoadRobotResponse(_message.Message):
+    __slots__ = ("robot",)
+    ROBOT_FIELD_NUMBER: _ClassVar[int]
+    robot: _robot_pb2.RobotModel
+    def __init__(self, robot: _Optional[_Union[_robot_pb2.RobotModel, _Mapping]] = ...) -> None: ...
+
+class ListRobotsRequest(_message.Message):
+    __slots__ = ()
+    def __init__(self) -> None: ...
+
+class ListRobotsResponse(_message.Message):
+    __slots__ = ("robots",)
+    ROBOTS_FIELD_NUMBER: _ClassVar[int]
+    robots: _containers.RepeatedCompositeFieldContainer[RobotSummary]
+    def __init__(self, robots: _Optional[_Iterable[_Union[RobotSummary, _Mapping]]] = ...) -> None: ...
+
+class RobotSummary(_message.Message):
+    __slots__ = ("id", "name")
+    ID_FIELD_NUMBER: _ClassVar[int]
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    id: str
+    name: str
+    def __init__(self, id: _Optional[str] = ..., name: _Optional[str] = ...) -> None: ...
+
+class GetRobotRequest(_message.Message):
+    __slots__ = ("id",)
+    ID_FIELD_NUMBER: _ClassVar[int]
+    id: str
+    def __init__(self, id: _Optional[str] = ...) -> None: ...
+
+class GetRobotResponse(_message.Message):
+    __slots__ = ("robot",)
+    ROBOT_FIELD_NUMBER: _ClassVar[int]
+    robot: _robot_pb2.RobotModel
+    def __init__(self, robot: _Optional[_Union[_robot_pb2.RobotModel, _Mapping]] = ...) -> None: ...
+
+class CheckStatesResponse(_message.Message):
+    __slots__ = ("answer",)
+    ANSWER_FIELD_NUMBER: _ClassVar[int]
+    answer: _query_pb2.Answer
+    def __init__(self, answer: _Optional[_Union[_query_pb2.Answer, _Mapping]] = ...) -> None: ...
+
+class CollideResponse(_message.Message):
+    __slots__ = ("answer",)
+    ANSWER_FIELD_NUMBER: _ClassVar[int]
+    answer: _query_pb2.Answer
+    def __init__(self, answer: _Optional[_Union[_query_pb2.Answer, _Mapping]] = ...) -> None: ...
+
+class DistanceResponse(_message.Message):
+    __slots__ = ("answer",)
+    ANSWER_FIELD_NUMBER: _ClassVar[int]
+    answer: _query_pb2.Answer
+    def __init__(self, answer: _Optional[_Union[_query_pb2.Answer, _Mapping]] = ...) -> None: ...
+
+class GetServerInfoRequest(_message.Message):
+    __slots__ = ()
+    def __init__(self) -> None: ...
+
+class GetServerInfoResponse(_message.Message):
+    __slots__ = ("version", "doors", "limits", "scenes", "threads")
+    VERSION_FIELD_NUMBER: _ClassVar[int]
+    DOORS_FIELD_NUMBER: _ClassVar[int]
+    LIMITS_FIELD_NUMBER: _ClassVar[int]
+    SCENES_FIELD_NUMBER: _ClassVar[int]
+    THREADS_FIELD_NUMBER: _ClassVar[int]
+    version: str
+    doors: _containers.RepeatedCompositeFieldContainer[Door]
+    limits: _containers.RepeatedCompositeFieldContainer[Limit]
+    scenes: _containers.RepeatedCompositeFieldContainer[_scene_pb2.SceneSummary]
+    threads: int
+    def __init__(self, version: _Optional[str] = ..., doors: _Optional[_Iterable[_Union[Door, _Mapping]]] = ..., limits: _Optional[_Iterable[_Union[Limit, _Mapping]]] = ..., scenes: _Optional[_Iterable[_Union[_scene_pb2.SceneSummary, _Mapping]]] = ..., threads: _Optional[int] = ...) -> None: ...
+
+class Door(_message.Message):
+    __slots__ = ("kind", "address")
+    KIND_FIELD_NUMBER: _ClassVar[int]
+    ADDRESS_FIELD_NUMBER: _ClassVar[int]
+    kind: str
+    address: str
+    def __init__(self, kind: _Optional[str] = ..., address: _Optional[str] = ...) -> None: ...
+
+class Limit(_message.Message):
+    __slots__ = ("name", "unit", "value", "what_happens")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    UNIT_FIELD_NUMBER: _ClassVar[int]
+    VALUE_FIELD_NUMBER: _ClassVar[int]
+    WHAT_HAPPENS_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    unit: str
+    value: int
+    what_happens: str
+    def __init__(self, name: _Optional[str] = ..., unit: _Optional[str] = ..., value: _Optional[int] = ..., what_happens: _Optional[str] = ...) -> None: ...
