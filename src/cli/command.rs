@@ -1,6 +1,6 @@
 //! Which command was asked for, and how did it end?
 
-use std::io::{self, Write};
+use std::io;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 use super::exit_code::Exit;
 use super::pairs::{self, Pairs};
 use super::serve::{self, Serve};
+use super::states::{self, States};
 
 /// How far apart, touching or not, which pair, where: collision and distance queries as proved brackets.
 #[derive(Parser, Debug)]
@@ -23,6 +24,8 @@ enum Command {
     Pairs(Pairs),
     /// The daemon: answers questions about scenes until it is told to end.
     Serve(Serve),
+    /// A robot in a table of states: a verdict, a bracket and the nearest pair for each.
+    States(States),
 }
 
 /// Reads the command line, does what it says, and returns how that ended.
@@ -32,15 +35,11 @@ pub fn run() -> ExitCode {
     let ended = match Arguments::parse().command {
         Command::Pairs(arguments) => pairs::run(&arguments, &mut output),
         Command::Serve(arguments) => return serve::run(&arguments, &mut output).into(),
+        Command::States(arguments) => states::run(&arguments, &mut output),
     };
-    let ended = ended.and_then(|()| output.flush());
-    match ended {
-        Ok(()) => Exit::Success.into(),
-        // The reader has seen enough, as in `clearance pairs FILE | head`.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Exit::Success.into(),
-        Err(error) => {
-            eprintln!("clearance: {error}");
-            Exit::Input.into()
-        }
+    let Err(failed) = ended else { return Exit::Success.into() };
+    if failed.exit != Exit::Success {
+        eprintln!("clearance: {}", failed.message);
     }
+    failed.exit.into()
 }

@@ -1,11 +1,16 @@
 //! The commands: flags and files in, lines out.
 
+mod backend;
 mod case;
 mod command;
 mod exit_code;
 mod json_field;
 mod pairs;
+mod robot_files;
+mod scene_file;
 mod serve;
+mod state_line;
+mod states;
 mod words;
 
 pub use command::run;

@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::case::{self, Case};
+use super::exit_code::Failed;
 use super::words;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{self, Accuracy, Bracket, Goal, Separation, Termination};
@@ -42,32 +43,39 @@ fn not_negative(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// The input cannot be read or the output not be written. A case that makes no sense is no error, but a line that says so.
-pub fn run(pairs: &Pairs, output: &mut dyn Write) -> io::Result<()> {
-    match &pairs.file {
+pub fn run(pairs: &Pairs, output: &mut dyn Write) -> Result<(), Failed> {
+    let (name, mut input): (_, Box<dyn BufRead>) = match &pairs.file {
         Some(path) => {
-            let file = File::open(path).map_err(|e| io::Error::new(e.kind(), format!("{}: {e}", path.display())))?;
-            answer_all(pairs, &mut BufReader::new(file), output)
+            let name = path.display().to_string();
+            let file = File::open(path).map_err(|error| Failed::input(format!("{name}: {error}")))?;
+            (name, Box::new(BufReader::new(file)))
         }
-        None => answer_all(pairs, &mut io::stdin().lock(), output),
-    }
+        None => ("standard input".to_owned(), Box::new(io::stdin().lock())),
+    };
+    answer_all(pairs, &name, &mut *input, output)
 }
 
-fn answer_all(pairs: &Pairs, input: &mut dyn BufRead, output: &mut dyn Write) -> io::Result<()> {
+fn answer_all(pairs: &Pairs, name: &str, input: &mut dyn BufRead, output: &mut dyn Write) -> Result<(), Failed> {
     let mut line = Vec::new();
     let mut case_number = 0;
-    while input.read_until(b'\n', &mut line)? > 0 {
+    let unreadable = |error| Failed::input(format!("{name}: {error}"));
+    while input.read_until(b'\n', &mut line).map_err(unreadable)? > 0 {
         let text = line.trim_ascii();
         if !text.is_empty() {
             if case_number >= pairs.start {
-                serde_json::to_writer(&mut *output, &answer(text, pairs))?;
-                output.write_all(b"\n")?;
-                output.flush()?;
+                write_line(output, &answer(text, pairs)).map_err(|error| Failed::output(&error))?;
             }
             case_number += 1;
         }
         line.clear();
     }
     Ok(())
+}
+
+fn write_line(output: &mut dyn Write, line: &Line) -> io::Result<()> {
+    serde_json::to_writer(&mut *output, line)?;
+    output.write_all(b"\n")?;
+    output.flush()
 }
 
 /// One line of output.
@@ -162,7 +170,7 @@ mod tests {
     fn lines(input: &str, start: usize) -> Vec<Value> {
         let pairs = Pairs { file: None, start, tolerance: None, max_time_us: None, json: false };
         let mut output = Vec::new();
-        answer_all(&pairs, &mut input.as_bytes(), &mut output).unwrap();
+        answer_all(&pairs, "test", &mut input.as_bytes(), &mut output).unwrap();
         String::from_utf8(output).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
     }
 

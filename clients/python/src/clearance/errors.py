@@ -84,7 +84,7 @@ def translated() -> Iterator[None]:
     except grpc.RpcError as error:
         code = error.code()
         metadata = error.trailing_metadata() or ()
-        details = {str(entry[0]): entry[1] for entry in metadata if isinstance(entry[1], str)}
+        details = {entry.key: entry.value for entry in metadata if isinstance(entry.value, str)}
         kind = _KINDS.get(code, ClearanceError)
         raise kind(code.name, f"{code.name}: {error.details()}", details) from None
 

@@ -1,0 +1,104 @@
+//! One line of the output of `clearance states`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::words;
+use crate::narrow_phase;
+use crate::query::{ItemAnswer, PairAnswer, Side, Verdict};
+use crate::scene::{BodyId, Revision};
+
+/// An answer, or what is wrong with a line of the input. Metres; null where there is no such pair.
+#[derive(Clone, Debug, Serialize)]
+pub struct AnswerLine {
+    id: Value,
+    verdict: &'static str,
+    signed_distance: Option<f64>,
+    lower: Option<f64>,
+    upper: Option<f64>,
+    pair: Option<[String; 2]>,
+    self_distance: Option<f64>,
+    self_pair: Option<[String; 2]>,
+    env_distance: Option<f64>,
+    env_pair: Option<[String; 2]>,
+    revision: Option<u64>,
+    cost: Option<Cost>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    message: Option<String>,
+}
+
+/// Counters; no times, so that the same work is the same line.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Cost {
+    supports: u64,
+    gjk_iterations: u64,
+    epa_iterations: u64,
+    nodes: u64,
+    pairs: u64,
+}
+
+/// What the sides of a pair are called.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// Links of the robot, by index.
+    pub links: &'a [String],
+    /// Bodies of the scene.
+    pub bodies: &'a BTreeMap<BodyId, String>,
+}
+
+impl AnswerLine {
+    /// The answer to a state.
+    #[must_use]
+    pub fn of_answer(id: &Value, item: &ItemAnswer, revision: Revision, names: Names) -> Self {
+        let narrow_phase::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = item.cost;
+        let distance = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| pair.signed_distance);
+        let named = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| [names.of(&pair.a), names.of(&pair.b)]);
+        Self {
+            id: id.clone(),
+            verdict: words::verdict(item.verdict),
+            signed_distance: distance(&item.nearest),
+            lower: item.nearest.as_ref().map(|pair| pair.bracket.lower),
+            upper: item.nearest.as_ref().map(|pair| pair.bracket.upper),
+            pair: named(&item.nearest),
+            self_distance: distance(&item.nearest_self),
+            self_pair: named(&item.nearest_self),
+            env_distance: distance(&item.nearest_scene),
+            env_pair: named(&item.nearest_scene),
+            revision: Some(revision.0),
+            cost: Some(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs }),
+            message: item.problem.clone(),
+        }
+    }
+
+    /// A line that nobody could be asked about.
+    #[must_use]
+    pub fn of_bad_line(id: &Value, message: &str) -> Self {
+        Self {
+            id: id.clone(),
+            verdict: words::verdict(Verdict::InvalidInput),
+            signed_distance: None,
+            lower: None,
+            upper: None,
+            pair: None,
+            self_distance: None,
+            self_pair: None,
+            env_distance: None,
+            env_pair: None,
+            revision: None,
+            cost: None,
+            message: Some(message.to_owned()),
+        }
+    }
+}
+
+impl Names<'_> {
+    fn of(&self, side: &Side) -> String {
+        match side {
+            Side::Link { link, .. } => self.links[*link as usize].clone(),
+            Side::Body { id, .. } => self.bodies.get(id).cloned().unwrap_or_else(|| format!("body {id}")),
+            Side::Query { .. } => "query".to_owned(),
+        }
+    }
+}
