@@ -10,7 +10,7 @@ use crate::robot::{LinkOptions, MeshUse, ModelOptions};
 use crate::scene::{BodyId, Edit, NewBody, Revision};
 use crate::service::{self, Change, ContentHash, Patience, RobotDescription, Service, ServiceError, Target};
 #[cfg(feature = "grpc")]
-use crate::transports::grpc::client::{Client, RemoteEdit};
+use crate::transports::grpc::{Client, RemoteEdit};
 
 /// One that answers.
 pub enum Backend {
@@ -110,7 +110,7 @@ impl Backend {
             Self::Library(service) => {
                 service.create_scene(name).map_err(Failed::failure)?;
                 let model = service.robots().get(&model.id).map_err(Failed::failure)?.model;
-                let robot = Edit::AddRobot { name: robot.to_owned(), model, base: Pose::IDENTITY };
+                let robot = Edit::AddRobot { name: robot.to_owned(), model, base: Pose::identity() };
                 let edits = std::iter::once(robot).chain(bodies.into_iter().map(Edit::AddBody)).collect();
                 let change = Change { edits, expected_epoch: None, expected_revision: None, key: None };
                 let applied =
@@ -121,7 +121,7 @@ impl Backend {
             Self::Daemon(client) => {
                 client.create_scene(name).await.map_err(Failed::daemon)?;
                 let (robot, model) = (robot.to_owned(), model.id.clone());
-                let robot = RemoteEdit::AddRobot { name: robot, model, base: Pose::IDENTITY };
+                let robot = RemoteEdit::AddRobot { name: robot, model, base: Pose::identity() };
                 let edits: Vec<RemoteEdit> =
                     std::iter::once(robot).chain(bodies.into_iter().map(RemoteEdit::AddBody)).collect();
                 let applied = client.apply(name, &edits).await.map_err(Failed::daemon)?.applied;

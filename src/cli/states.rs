@@ -176,9 +176,7 @@ impl<'a> Stage<'a> {
         while scene.objects.iter().any(|object| object.name == robot) {
             robot.push('_');
         }
-        let body = |object: &SceneObject| {
-            NewBody::new(object.name.clone(), object.shape.clone(), object.pose)
-        };
+        let body = |object: &SceneObject| NewBody::new(object.name.clone(), object.shape.clone(), object.pose);
         let bodies = scene.objects.iter().map(body).collect();
         let made = backend.make_scene(&name, (&robot, model), bodies).await;
         let MadeScene { revision, bodies } = made.map_err(|mut failed| {

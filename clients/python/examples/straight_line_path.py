@@ -1,0 +1,65 @@
+"""Checks a robot's straight-line path between two joint vectors and prints where it is first blocked.
+
+    clearance serve &
+    python straight_line_path.py robot.urdf robot.srdf "0 -1.5 0 -1.5 0 0" "3.1 -0.5 0 -1.5 0 0" [HOST:PORT]
+
+The robot stands before a table and a post. States are checked at steps along the path; what lies between two steps is
+not looked at.
+"""
+
+import sys
+
+import numpy as np
+
+import clearance
+
+STEPS = 1000
+
+
+def main(urdf: str, srdf: str, start: str, goal: str, *address: str) -> None:
+    with clearance.Client(*address) as client:
+        robot = client.load_robot(urdf, srdf)
+        scene = client.create_scene(f"straight line path {np.random.default_rng().integers(1 << 60)}")
+        try:
+            applied = scene.apply(
+                clearance.add_robot("arm", robot),
+                clearance.add_body("table", clearance.box([1.0, 1.0, 0.02]), clearance.pose([0.0, 0.0, -0.2])),
+                clearance.add_body("post", clearance.capsule(0.05, 0.5), clearance.pose([-0.5, 0.3, 0.4])),
+            )
+            names = {"table": applied.added[0], "post": applied.added[1]}
+            report(scene, robot, names, numbers(start), numbers(goal))
+        finally:
+            scene.delete()
+
+
+def report(scene, robot, bodies, start, goal) -> None:
+    along = np.linspace(0.0, 1.0, STEPS)[:, None]
+    path = (1.0 - along) * start + along * goal
+    answer = scene.check_states("arm", path, want="verdict", stop_at_first=True)
+    if answer.stopped_at is None:
+        nearest = scene.check_states("arm", path).lower
+        closest = int(np.argmin(nearest))
+        print(f"free at all {STEPS} steps; nearest at step {closest}, {nearest[closest]:.6f} m or more")
+        return
+    blocked = answer.stopped_at
+    (state,) = scene.look_at_states("arm", path[blocked : blocked + 1])
+    print(f"blocked at step {blocked} of {STEPS}, {100 * along[blocked, 0]:.1f} % of the way: {state.verdict.name}")
+    print("joint positions:", np.array2string(path[blocked], precision=4))
+    for pair in state.pairs:
+        print(f"  {name(pair.a, robot, bodies)} and {name(pair.b, robot, bodies)}: {pair.signed_distance:.6f} m")
+
+
+def name(side, robot, bodies) -> str:
+    if side.kind == "link":
+        return robot.links[side.id]
+    return next(name for name, id in bodies.items() if id == side.id)
+
+
+def numbers(text: str) -> np.ndarray:
+    return np.array([float(word) for word in text.split()])
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 5:
+        raise SystemExit(__doc__)
+    main(*sys.argv[1:])

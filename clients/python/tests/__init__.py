@@ -1,0 +1,1 @@
+"""Tests of the client against a daemon of its own. `CLEARANCE_BIN` names the daemon's program."""

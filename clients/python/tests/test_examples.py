@@ -1,0 +1,56 @@
+"""The examples and the README do what they say; the generated code is that of the .proto files."""
+
+import filecmp
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from .daemon import ROOT, DaemonTest
+
+CLIENT = ROOT / "clients" / "python"
+UR5 = ROOT / "tests" / "data" / "robot-ur5"
+
+
+class Examples(DaemonTest):
+    def run_example(self, name: str, *arguments: str) -> str:
+        command = [sys.executable, str(CLIENT / "examples" / name), *arguments, self.address]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_first_query(self) -> None:
+        self.assertRegex(self.run_example("first_query.py"), r"collide\? (FREE|COLLISION)\nhow far\? \S+ m")
+
+    def test_a_path_that_is_free_and_one_that_is_blocked(self) -> None:
+        robot = (str(UR5 / "ur5.urdf"), str(UR5 / "ur5.srdf"))
+        up = "1.57 -1.57 0 -1.57 -1.57 3.14"
+        free = self.run_example("straight_line_path.py", *robot, up, "1.57 -1.57 0.5 -1.57 -1.57 3.14")
+        self.assertRegex(free, r"^free at all 1000 steps; nearest at step \d+, 0\.\d+ m or more\n$")
+        blocked = self.run_example("straight_line_path.py", *robot, up, "1.57 0.6 0 -1.57 -1.57 3.14")
+        self.assertRegex(blocked, r"^blocked at step \d+ of 1000, \S+ % of the way: COLLISION\n")
+        self.assertRegex(blocked, r"  \w+ and table: -\d")
+
+    def test_the_readme_runs(self) -> None:
+        blocks = re.findall(r"```python\n(.*?)```", (CLIENT / "README.md").read_text(), re.DOTALL)
+        self.assertGreater(len(blocks), 2)
+        program = "\n".join(blocks).replace("127.0.0.1:50551", self.address)
+        environment = {**os.environ, "UR5": str(UR5)}
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, cwd=UR5, env=environment
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Generated(unittest.TestCase):
+    def test_generating_again_changes_nothing(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([sys.executable, str(CLIENT / "regenerate.py"), folder], check=True, timeout=120)
+            fresh, kept = Path(folder) / "clearance" / "v1", CLIENT / "src" / "clearance" / "v1"
+            names = sorted(path.name for path in fresh.iterdir())
+            self.assertEqual(names, sorted(path.name for path in kept.glob("*_pb2*")))
+            different = [name for name in names if not filecmp.cmp(fresh / name, kept / name, shallow=False)]
+            self.assertEqual(different, [], "run clients/python/regenerate.py")

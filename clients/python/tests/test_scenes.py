@@ -1,0 +1,147 @@
+"""Scenes, edits, and questions about bodies."""
+
+import unittest
+
+import numpy as np
+
+import clearance
+from clearance import Verdict
+
+from .daemon import DaemonTest
+
+
+class Scenes(DaemonTest):
+    def test_an_answer_comes_from_the_revision_that_holds_the_edit(self) -> None:
+        first = self.scene.apply(clearance.add_body("ball", clearance.sphere(0.5)))
+        (ball,) = first.added
+        second = self.scene.apply(clearance.move_body("ball", clearance.pose([3.0, 0.0, 0.0])))
+        self.assertEqual((first.revision, second.revision), (1, 2))
+        subject = (clearance.point(), clearance.pose([0.0, 0.0, 0.0]))
+        (answer,) = self.scene.distance(subject, at_least=second.revision)
+        self.assertAlmostEqual(answer.nearest.signed_distance, 2.5, places=12)
+        self.assertEqual((answer.nearest.a.kind, answer.nearest.b.id), ("query", ball))
+
+    def test_distance_gives_bracket_points_and_normal(self) -> None:
+        self.scene.apply(
+            clearance.add_body("a", clearance.sphere(1.0)),
+            clearance.add_body("b", clearance.box([1, 1, 1]), clearance.pose([0, 0, 5])),
+        )
+        (answer,) = self.scene.distance()
+        pair = answer.nearest
+        self.assertEqual(answer.verdict, Verdict.FREE)
+        self.assertLessEqual(pair.bracket.lower, 3.0)
+        self.assertLessEqual(3.0, pair.bracket.upper)
+        np.testing.assert_allclose(pair.normal, [0, 0, 1], atol=1e-9)
+        np.testing.assert_allclose(pair.point_on_b - pair.point_on_a, pair.signed_distance * pair.normal, atol=1e-9)
+
+    def test_collide_lists_the_pairs_that_touch(self) -> None:
+        ids = self.scene.apply(
+            *(clearance.add_body(f"ball {x}", clearance.sphere(0.6), clearance.pose([x, 0, 0])) for x in (0, 1, 3))
+        ).added
+        (answer,) = self.scene.collide()
+        self.assertEqual([(pair.a.id, pair.b.id) for pair in answer.pairs], [(ids[0], ids[1])])
+        by_name, by_id = self.scene.collide("ball 3", ids[0])
+        self.assertEqual((by_name.verdict, by_id.verdict), (Verdict.FREE, Verdict.COLLISION))
+
+    def test_every_shape_is_understood(self) -> None:
+        corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+        shapes = {
+            "sphere": clearance.sphere(0.1),
+            "point": clearance.point(),
+            "box": clearance.box([1, 2, 3]),
+            "capsule": clearance.capsule(0.1, 0.2),
+            "cylinder": clearance.cylinder(0.1, 0.2),
+            "cone": clearance.cone(0.1, 0.2),
+            "ellipsoid": clearance.ellipsoid([1, 2, 3]),
+            "convex": clearance.convex(corners),
+            "segment": clearance.segment([0, 0, 0], [1, 1, 1]),
+            "triangle": clearance.triangle([0, 0, 0], [1, 0, 0], [0, 1, 0]),
+            "half_space": clearance.half_space([0, 0, 1], 0.0),
+            "plane": clearance.plane([0, 0, 1], 0.0),
+            "mesh": clearance.mesh(corners, faces, "solid"),
+            "compound": clearance.compound([(clearance.sphere(0.1), clearance.pose([1, 0, 0]))]),
+        }
+        self.scene.apply(*(clearance.add_body(name, shape) for name, shape in shapes.items()))
+        self.assertEqual([body.shape_kind for body in self.scene.contents().bodies], list(shapes))
+
+    def test_margins_and_allowed_collisions_of_pairs(self) -> None:
+        a, b = clearance.body("a"), clearance.body("b")
+        self.scene.apply(
+            clearance.add_body("a", clearance.sphere(1.0)),
+            clearance.add_body("b", clearance.sphere(1.0), clearance.pose([2.5, 0, 0])),
+            clearance.set_pair_margin(a, b, 1.0),
+        )
+        self.assertEqual(self.scene.distance()[0].verdict, Verdict.MARGIN)
+        self.scene.apply(clearance.set_pair_margin(a, b, None), clearance.allow_collision(a, b))
+        (answer,) = self.scene.distance()
+        self.assertEqual((answer.verdict, answer.nearest), (Verdict.FREE, None))
+
+
+class Refusals(DaemonTest):
+    def test_an_error_names_item_and_field_and_changes_nothing(self) -> None:
+        good, bad = clearance.sphere(1.0), clearance.box([1.0, -1.0, 1.0])
+        with self.assertRaises(clearance.InvalidRequest) as caught:
+            self.scene.apply(clearance.add_body("a", good), clearance.add_body("b", bad))
+        error = caught.exception
+        self.assertEqual((error.reason, error.item), ("INVALID_FIELD", 1))
+        self.assertIn("half_extents", error.field)
+        self.assertEqual(self.scene.contents().revision, 0)
+
+    def test_non_finite_numbers_and_zero_quaternions_are_refused_by_name(self) -> None:
+        for shape, pose, field in [
+            (clearance.sphere(np.nan), clearance.pose(), "radius"),
+            (clearance.sphere(1.0), clearance.pose([np.inf, 0, 0]), "translation"),
+            (clearance.sphere(1.0), clearance.pose(rotation=[0, 0, 0, 0]), "rotation"),
+        ]:
+            with self.subTest(field), self.assertRaises(clearance.InvalidRequest) as caught:
+                self.scene.apply(clearance.add_body("a", shape, pose))
+            self.assertIn(field, f"{caught.exception.field} {caught.exception}")
+
+    def test_a_lost_race_says_where_the_scene_is(self) -> None:
+        self.scene.apply(clearance.add_body("a", clearance.point()))
+        with self.assertRaises(clearance.Conflict) as caught:
+            self.scene.apply(clearance.remove_body("a"), expected_revision=0)
+        self.assertEqual((caught.exception.reason, caught.exception.revision), ("REVISION_MOVED_ON", 1))
+
+    def test_unknown_names_are_not_found(self) -> None:
+        with self.assertRaises(clearance.NotFound):
+            self.client.scene("nowhere").contents()
+        with self.assertRaises(clearance.NotFound):
+            self.scene.distance("nobody")
+
+    def test_a_revision_that_does_not_come_is_unavailable(self) -> None:
+        with self.assertRaises((clearance.Unavailable, clearance.DeadlineExceeded)):
+            self.scene.distance(at_least=7, timeout=0.2)
+
+    def test_nobody_there_is_unavailable(self) -> None:
+        with self.assertRaises(clearance.Unavailable):
+            clearance.Client("127.0.0.1:1", timeout=5.0).scenes()
+
+    def test_wrong_shapes_of_arrays_are_refused_before_anything_is_sent(self) -> None:
+        for make in (
+            lambda: clearance.box([1, 2]),
+            lambda: clearance.convex([1, 2, 3]),
+            lambda: clearance.mesh([[0, 0, 0]], [[0.0, 0.0, 0.0]]),
+            lambda: clearance.mesh([[0, 0, 0]], [[0, 0, 0]], "blob"),
+            lambda: clearance.pose(rotation=[1, 0, 0]),
+            lambda: clearance.pose_from_matrix(2 * np.eye(4)),
+            lambda: self.scene.check_states("arm", [1, 2, 3]),
+            lambda: self.scene.distance(want="everything"),
+        ):
+            with self.assertRaises(ValueError):
+                make()
+
+
+class Poses(unittest.TestCase):
+    def test_matrices_become_the_same_rotation(self) -> None:
+        chance = np.random.default_rng(7)
+        for _ in range(200):
+            q = chance.normal(size=4)
+            q /= np.linalg.norm(q)
+            w, (x, y, z) = q[0], q[1:]
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            matrix = np.eye(4)
+            matrix[:3, :3] = np.eye(3) + 2 * w * cross + 2 * cross @ cross
+            r = clearance.pose_from_matrix(matrix).rotation
+            self.assertAlmostEqual(abs(np.dot(q, [r.w, r.x, r.y, r.z])), 1.0, places=12)
