@@ -1,6 +1,7 @@
 //! The commands that answer from the library, run as a user runs them, on data with known truth.
 
 mod hard_cases;
+mod robot_states;
 
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};

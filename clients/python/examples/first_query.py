@@ -1,17 +1,20 @@
 """Two ellipsoids at random poses: do they collide, and how far apart are they?
 
     clearance serve &
-    python first_query.py [HOST:PORT]
+    python first_query.py
 """
 
-import sys
+import argparse
 
 import numpy as np
 
 import clearance
 
+arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+arguments.add_argument("--address", default=clearance.DEFAULT_ADDRESS, help="of the daemon (default: %(default)s)")
+
 chance = np.random.default_rng()
-with clearance.Client(*sys.argv[1:2]) as client:
+with clearance.Client(arguments.parse_args().address) as client:
     scene = client.create_scene(f"first query {chance.integers(1 << 60)}")
     scene.apply(
         clearance.add_body("a", clearance.ellipsoid([0.5, 0.3, 0.2]), clearance.random_pose(chance)),

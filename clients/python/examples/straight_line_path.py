@@ -1,33 +1,42 @@
 """Checks a robot's straight-line path between two joint vectors and prints where it is first blocked.
 
     clearance serve &
-    python straight_line_path.py robot.urdf robot.srdf "0 -1.5 0 -1.5 0 0" "3.1 -0.5 0 -1.5 0 0" [HOST:PORT]
+    python straight_line_path.py
 
-The robot stands before a table and a post. States are checked at steps along the path; what lies between two steps is
-not looked at.
+A UR5 stands over a table, beside a post. States are checked at steps along the path; what lies between two steps is not
+looked at.
 """
 
-import sys
+import argparse
+from pathlib import Path
 
 import numpy as np
 
 import clearance
 
+UR5 = Path(__file__).resolve().parents[3] / "tests" / "data" / "robot-ur5"
 STEPS = 1000
 
 
-def main(urdf: str, srdf: str, start: str, goal: str, *address: str) -> None:
-    with clearance.Client(*address) as client:
-        robot = client.load_robot(urdf, srdf)
+def main() -> None:
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--address", default=clearance.DEFAULT_ADDRESS, help="of the daemon (default: %(default)s)")
+    arguments.add_argument("--urdf", default=UR5 / "ur5.urdf")
+    arguments.add_argument("--srdf", default=UR5 / "ur5.srdf")
+    arguments.add_argument("--start", type=numbers, default="1.57 -0.6 0 -1.57 -1.57 3.14", help="(default: %(default)s)")
+    arguments.add_argument("--goal", type=numbers, default="-1.57 -0.6 0 -1.57 -1.57 3.14", help="(default: %(default)s)")
+    given = arguments.parse_args()
+    with clearance.Client(given.address) as client:
+        robot = client.load_robot(given.urdf, given.srdf)
         scene = client.create_scene(f"straight line path {np.random.default_rng().integers(1 << 60)}")
         try:
             applied = scene.apply(
                 clearance.add_robot("arm", robot),
-                clearance.add_body("table", clearance.box([1.0, 1.0, 0.02]), clearance.pose([0.0, 0.0, -0.2])),
-                clearance.add_body("post", clearance.capsule(0.05, 0.5), clearance.pose([-0.5, 0.3, 0.4])),
+                clearance.add_body("table", clearance.box([1.0, 1.0, 0.02]), clearance.pose([0.0, 0.0, 0.85])),
+                clearance.add_body("post", clearance.capsule(0.05, 0.3), clearance.pose([0.5, 0.3, 1.2])),
             )
-            names = {"table": applied.added[0], "post": applied.added[1]}
-            report(scene, robot, names, numbers(start), numbers(goal))
+            bodies = dict(zip(applied.added, ["table", "post"]))
+            report(scene, robot, bodies, given.start, given.goal)
         finally:
             scene.delete()
 
@@ -52,7 +61,7 @@ def report(scene, robot, bodies, start, goal) -> None:
 def name(side, robot, bodies) -> str:
     if side.kind == "link":
         return robot.links[side.id]
-    return next(name for name, id in bodies.items() if id == side.id)
+    return bodies[side.id]
 
 
 def numbers(text: str) -> np.ndarray:
@@ -60,6 +69,4 @@ def numbers(text: str) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 5:
-        raise SystemExit(__doc__)
-    main(*sys.argv[1:])
+    main()

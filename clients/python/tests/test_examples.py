@@ -17,7 +17,8 @@ UR5 = ROOT / "tests" / "data" / "robot-ur5"
 
 class Examples(DaemonTest):
     def run_example(self, name: str, *arguments: str) -> str:
-        command = [sys.executable, str(CLIENT / "examples" / name), *arguments, self.address]
+        address = [f"--address={self.address}"]
+        command = [sys.executable, str(CLIENT / "examples" / name), *address, *arguments]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
@@ -26,13 +27,11 @@ class Examples(DaemonTest):
         self.assertRegex(self.run_example("first_query.py"), r"collide\? (FREE|COLLISION)\nhow far\? \S+ m")
 
     def test_a_path_that_is_free_and_one_that_is_blocked(self) -> None:
-        robot = (str(UR5 / "ur5.urdf"), str(UR5 / "ur5.srdf"))
-        up = "1.57 -1.57 0 -1.57 -1.57 3.14"
-        free = self.run_example("straight_line_path.py", *robot, up, "1.57 -1.57 0.5 -1.57 -1.57 3.14")
+        free = self.run_example("straight_line_path.py", "--goal=1.57 -1.2 0 -1.57 -1.57 3.14")
         self.assertRegex(free, r"^free at all 1000 steps; nearest at step \d+, 0\.\d+ m or more\n$")
-        blocked = self.run_example("straight_line_path.py", *robot, up, "1.57 0.6 0 -1.57 -1.57 3.14")
+        blocked = self.run_example("straight_line_path.py")
         self.assertRegex(blocked, r"^blocked at step \d+ of 1000, \S+ % of the way: COLLISION\n")
-        self.assertRegex(blocked, r"  \w+ and table: -\d")
+        self.assertRegex(blocked, r"  forearm_link_0 and post: -\d")
 
     def test_the_readme_runs(self) -> None:
         blocks = re.findall(r"```python\n(.*?)```", (CLIENT / "README.md").read_text(), re.DOTALL)

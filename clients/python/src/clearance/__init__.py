@@ -8,7 +8,7 @@ Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are 
 """
 
 from .answers import Applied, Bracket, Cost, ItemAnswer, PairAnswer, Side, StatesAnswer, Verdict
-from .client import Client, Scene
+from .client import DEFAULT_ADDRESS, Client, Scene
 from .edits import (
     add_body,
     add_robot,
@@ -59,6 +59,7 @@ __all__ = [
     "Bracket",
     "ClearanceError",
     "Client",
+    "DEFAULT_ADDRESS",
     "Conflict",
     "Cost",
     "DeadlineExceeded",

@@ -33,8 +33,6 @@ class Applied:
     revision: int
     #: Ids of the bodies that were added, in the order of their edits.
     added: tuple[int, ...]
-    #: What was strange, but could be done.
-    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -151,7 +151,7 @@ class Scene:
         )
         with translated():
             answer = self._client._scenes.Apply(request, timeout=self._client._timeout)
-        return Applied(answer.epoch, answer.revision, tuple(answer.added), tuple(answer.warnings))
+        return Applied(answer.epoch, answer.revision, tuple(answer.added))
 
     def contents(self, *, revision: Optional[int] = None) -> scene_pb2.SceneContents:
         """Bodies and robots of the newest revision, or of a given one."""

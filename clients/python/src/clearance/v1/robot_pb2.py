@@ -25,15 +25,15 @@ _sym_db = _symbol_database.Default()
 from clearance.v1 import geometry_pb2 as clearance_dot_v1_dot_geometry__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x18\x63learance/v1/robot.proto\x12\x0c\x63learance.v1\x1a\x1b\x63learance/v1/geometry.proto\"/\n\x0bMeshBinding\x12\x10\n\x08\x66ilename\x18\x01 \x01(\t\x12\x0e\n\x06sha256\x18\x02 \x01(\t\"\x86\x01\n\x0bLinkOptions\x12\x0c\n\x04link\x18\x01 \x01(\t\x12)\n\tmesh_mode\x18\x02 \x01(\x0e\x32\x16.clearance.v1.MeshMode\x12\x12\n\x05scale\x18\x03 \x01(\x01H\x00\x88\x01\x01\x12\x14\n\x07padding\x18\x04 \x01(\x01H\x01\x88\x01\x01\x42\x08\n\x06_scaleB\n\n\x08_padding\"\xeb\x01\n\x10LoadRobotRequest\x12\x0c\n\x04urdf\x18\x01 \x01(\t\x12\x11\n\x04srdf\x18\x02 \x01(\tH\x00\x88\x01\x01\x12)\n\x06meshes\x18\x03 \x03(\x0b\x32\x19.clearance.v1.MeshBinding\x12)\n\tmesh_mode\x18\x04 \x01(\x0e\x32\x16.clearance.v1.MeshMode\x12\x0f\n\x07padding\x18\x05 \x01(\x01\x12\x12\n\x05scale\x18\x06 \x01(\x01H\x01\x88\x01\x01\x12(\n\x05links\x18\x07 \x03(\x0b\x32\x19.clearance.v1.LinkOptionsB\x07\n\x05_srdfB\x08\n\x06_scale\"\xa6\x02\n\nRobotModel\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\x12\x1a\n\x12\x64\x65grees_of_freedom\x18\x03 \x01(\r\x12#\n\x06joints\x18\x04 \x03(\x0b\x32\x13.clearance.v1.Joint\x12!\n\x05links\x18\x05 \x03(\x0b\x32\x12.clearance.v1.Link\x12*\n\nself_pairs\x18\x06 \x03(\x0b\x32\x16.clearance.v1.LinkPair\x12\x32\n\x0e\x65xcluded_pairs\x18\x07 \x03(\x0b\x32\x1a.clearance.v1.ExcludedPair\x12(\n\x06groups\x18\x08 \x03(\x0b\x32\x18.clearance.v1.JointGroup\x12\x10\n\x08warnings\x18\t \x03(\t\"\xf3\x01\n\x05Joint\x12\x0c\n\x04name\x18\x01 \x01(\t\x12%\n\x04kind\x18\x02 \x01(\x0e\x32\x17.clearance.v1.JointKind\x12\r\n\x05\x66irst\x18\x03 \x01(\r\x12\r\n\x05width\x18\x04 \x01(\r\x12\x12\n\x05lower\x18\x05 \x01(\x01H\x00\x88\x01\x01\x12\x12\n\x05upper\x18\x06 \x01(\x01H\x01\x88\x01\x01\x12\x13\n\x0bparent_link\x18\x07 \x01(\t\x12\x12\n\nchild_link\x18\x08 \x01(\t\x12\x0e\n\x06mimics\x18\t \x03(\t\x12\x15\n\x08velocity\x18\n \x01(\x01H\x02\x88\x01\x01\x42\x08\n\x06_lowerB\x08\n\x06_upperB\x0b\n\t_velocity\"$\n\x04Link\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06shapes\x18\x02 \x01(\r\" \n\x08LinkPair\x12\t\n\x01\x61\x18\x01 \x01(\r\x12\t\n\x01\x62\x18\x02 \x01(\r\"4\n\x0c\x45xcludedPair\x12\t\n\x01\x61\x18\x01 \x01(\r\x12\t\n\x01\x62\x18\x02 \x01(\r\x12\x0e\n\x06reason\x18\x03 \x01(\t\"9\n\nJointGroup\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06joints\x18\x02 \x03(\t\x12\r\n\x05links\x18\x03 \x03(\t*\x8e\x01\n\tJointKind\x12\x1a\n\x16JOINT_KIND_UNSPECIFIED\x10\x00\x12\x17\n\x13JOINT_KIND_REVOLUTE\x10\x01\x12\x19\n\x15JOINT_KIND_CONTINUOUS\x10\x02\x12\x18\n\x14JOINT_KIND_PRISMATIC\x10\x03\x12\x17\n\x13JOINT_KIND_FLOATING\x10\x04\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x18\x63learance/v1/robot.proto\x12\x0c\x63learance.v1\x1a\x1b\x63learance/v1/geometry.proto\"/\n\x0bMeshBinding\x12\x10\n\x08\x66ilename\x18\x01 \x01(\t\x12\x0e\n\x06sha256\x18\x02 \x01(\t\"\x86\x01\n\x0bLinkOptions\x12\x0c\n\x04link\x18\x01 \x01(\t\x12)\n\tmesh_mode\x18\x02 \x01(\x0e\x32\x16.clearance.v1.MeshMode\x12\x12\n\x05scale\x18\x03 \x01(\x01H\x00\x88\x01\x01\x12\x14\n\x07padding\x18\x04 \x01(\x01H\x01\x88\x01\x01\x42\x08\n\x06_scaleB\n\n\x08_padding\"\xeb\x01\n\x10LoadRobotRequest\x12\x0c\n\x04urdf\x18\x01 \x01(\t\x12\x11\n\x04srdf\x18\x02 \x01(\tH\x00\x88\x01\x01\x12)\n\x06meshes\x18\x03 \x03(\x0b\x32\x19.clearance.v1.MeshBinding\x12)\n\tmesh_mode\x18\x04 \x01(\x0e\x32\x16.clearance.v1.MeshMode\x12\x0f\n\x07padding\x18\x05 \x01(\x01\x12\x12\n\x05scale\x18\x06 \x01(\x01H\x01\x88\x01\x01\x12(\n\x05links\x18\x07 \x03(\x0b\x32\x19.clearance.v1.LinkOptionsB\x07\n\x05_srdfB\x08\n\x06_scale\"\xa2\x02\n\nRobotModel\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\x12\x1a\n\x12\x64\x65grees_of_freedom\x18\x03 \x01(\r\x12#\n\x06joints\x18\x04 \x03(\x0b\x32\x13.clearance.v1.Joint\x12!\n\x05links\x18\x05 \x03(\x0b\x32\x12.clearance.v1.Link\x12\x0c\n\x04root\x18\x06 \x01(\r\x12*\n\nself_pairs\x18\x07 \x03(\x0b\x32\x16.clearance.v1.LinkPair\x12\x32\n\x0e\x65xcluded_pairs\x18\x08 \x03(\x0b\x32\x1a.clearance.v1.ExcludedPair\x12(\n\x06groups\x18\t \x03(\x0b\x32\x18.clearance.v1.JointGroup\"\xb5\x01\n\x05Joint\x12\x0c\n\x04name\x18\x01 \x01(\t\x12%\n\x04kind\x18\x02 \x01(\x0e\x32\x17.clearance.v1.JointKind\x12\r\n\x05\x66irst\x18\x03 \x01(\r\x12\r\n\x05width\x18\x04 \x01(\r\x12\x12\n\x05lower\x18\x05 \x01(\x01H\x00\x88\x01\x01\x12\x12\n\x05upper\x18\x06 \x01(\x01H\x01\x88\x01\x01\x12\x0e\n\x06parent\x18\x07 \x01(\r\x12\r\n\x05\x63hild\x18\x08 \x01(\rB\x08\n\x06_lowerB\x08\n\x06_upper\"$\n\x04Link\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06shapes\x18\x02 \x01(\r\" \n\x08LinkPair\x12\t\n\x01\x61\x18\x01 \x01(\r\x12\t\n\x01\x62\x18\x02 \x01(\r\"4\n\x0c\x45xcludedPair\x12\t\n\x01\x61\x18\x01 \x01(\r\x12\t\n\x01\x62\x18\x02 \x01(\r\x12\x0e\n\x06reason\x18\x03 \x01(\t\"c\n\nJointGroup\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0e\n\x06joints\x18\x02 \x03(\r\x12\r\n\x05links\x18\x03 \x03(\r\x12(\n\x06states\x18\x04 \x03(\x0b\x32\x18.clearance.v1.NamedState\"K\n\nNamedState\x12\x0c\n\x04name\x18\x01 \x01(\t\x12/\n\tpositions\x18\x02 \x03(\x0b\x32\x1c.clearance.v1.JointPositions\"/\n\x0eJointPositions\x12\r\n\x05joint\x18\x01 \x01(\r\x12\x0e\n\x06values\x18\x02 \x03(\x01*\x8e\x01\n\tJointKind\x12\x1a\n\x16JOINT_KIND_UNSPECIFIED\x10\x00\x12\x17\n\x13JOINT_KIND_REVOLUTE\x10\x01\x12\x19\n\x15JOINT_KIND_CONTINUOUS\x10\x02\x12\x18\n\x14JOINT_KIND_PRISMATIC\x10\x03\x12\x17\n\x13JOINT_KIND_FLOATING\x10\x04\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'clearance.v1.robot_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_JOINTKIND']._serialized_start=1224
-  _globals['_JOINTKIND']._serialized_end=1366
+  _globals['_JOINTKIND']._serialized_start=1326
+  _globals['_JOINTKIND']._serialized_end=1468
   _globals['_MESHBINDING']._serialized_start=71
   _globals['_MESHBINDING']._serialized_end=118
   _globals['_LINKOPTIONS']._serialized_start=121
@@ -41,15 +41,19 @@ if not _descriptor._USE_C_DESCRIPTORS:
   _globals['_LOADROBOTREQUEST']._serialized_start=258
   _globals['_LOADROBOTREQUEST']._serialized_end=493
   _globals['_ROBOTMODEL']._serialized_start=496
-  _globals['_ROBOTMODEL']._serialized_end=790
-  _globals['_JOINT']._serialized_start=793
-  _globals['_JOINT']._serialized_end=1036
-  _globals['_LINK']._serialized_start=1038
-  _globals['_LINK']._serialized_end=1074
-  _globals['_LINKPAIR']._serialized_start=1076
-  _globals['_LINKPAIR']._serialized_end=1108
-  _globals['_EXCLUDEDPAIR']._serialized_start=1110
-  _globals['_EXCLUDEDPAIR']._serialized_end=1162
-  _globals['_JOINTGROUP']._serialized_start=1164
-  _globals['_JOINTGROUP']._serialized_end=1221
+  _globals['_ROBOTMODEL']._serialized_end=786
+  _globals['_JOINT']._serialized_start=789
+  _globals['_JOINT']._serialized_end=970
+  _globals['_LINK']._serialized_start=972
+  _globals['_LINK']._serialized_end=1008
+  _globals['_LINKPAIR']._serialized_start=1010
+  _globals['_LINKPAIR']._serialized_end=1042
+  _globals['_EXCLUDEDPAIR']._serialized_start=1044
+  _globals['_EXCLUDEDPAIR']._serialized_end=1096
+  _globals['_JOINTGROUP']._serialized_start=1098
+  _globals['_JOINTGROUP']._serialized_end=1197
+  _globals['_NAMEDSTATE']._serialized_start=1199
+  _globals['_NAMEDSTATE']._serialized_end=1274
+  _globals['_JOINTPOSITIONS']._serialized_start=1276
+  _globals['_JOINTPOSITIONS']._serialized_end=1323
 # @@protoc_insertion_point(module_scope)

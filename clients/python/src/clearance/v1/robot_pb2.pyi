@@ -60,50 +60,46 @@ class LoadRobotRequest(_message.Message):
     def __init__(self, urdf: _Optional[str] = ..., srdf: _Optional[str] = ..., meshes: _Optional[_Iterable[_Union[MeshBinding, _Mapping]]] = ..., mesh_mode: _Optional[_Union[_geometry_pb2.MeshMode, str]] = ..., padding: _Optional[float] = ..., scale: _Optional[float] = ..., links: _Optional[_Iterable[_Union[LinkOptions, _Mapping]]] = ...) -> None: ...
 
 class RobotModel(_message.Message):
-    __slots__ = ("id", "name", "degrees_of_freedom", "joints", "links", "self_pairs", "excluded_pairs", "groups", "warnings")
+    __slots__ = ("id", "name", "degrees_of_freedom", "joints", "links", "root", "self_pairs", "excluded_pairs", "groups")
     ID_FIELD_NUMBER: _ClassVar[int]
     NAME_FIELD_NUMBER: _ClassVar[int]
     DEGREES_OF_FREEDOM_FIELD_NUMBER: _ClassVar[int]
     JOINTS_FIELD_NUMBER: _ClassVar[int]
     LINKS_FIELD_NUMBER: _ClassVar[int]
+    ROOT_FIELD_NUMBER: _ClassVar[int]
     SELF_PAIRS_FIELD_NUMBER: _ClassVar[int]
     EXCLUDED_PAIRS_FIELD_NUMBER: _ClassVar[int]
     GROUPS_FIELD_NUMBER: _ClassVar[int]
-    WARNINGS_FIELD_NUMBER: _ClassVar[int]
     id: str
     name: str
     degrees_of_freedom: int
     joints: _containers.RepeatedCompositeFieldContainer[Joint]
     links: _containers.RepeatedCompositeFieldContainer[Link]
+    root: int
     self_pairs: _containers.RepeatedCompositeFieldContainer[LinkPair]
     excluded_pairs: _containers.RepeatedCompositeFieldContainer[ExcludedPair]
     groups: _containers.RepeatedCompositeFieldContainer[JointGroup]
-    warnings: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, id: _Optional[str] = ..., name: _Optional[str] = ..., degrees_of_freedom: _Optional[int] = ..., joints: _Optional[_Iterable[_Union[Joint, _Mapping]]] = ..., links: _Optional[_Iterable[_Union[Link, _Mapping]]] = ..., self_pairs: _Optional[_Iterable[_Union[LinkPair, _Mapping]]] = ..., excluded_pairs: _Optional[_Iterable[_Union[ExcludedPair, _Mapping]]] = ..., groups: _Optional[_Iterable[_Union[JointGroup, _Mapping]]] = ..., warnings: _Optional[_Iterable[str]] = ...) -> None: ...
+    def __init__(self, id: _Optional[str] = ..., name: _Optional[str] = ..., degrees_of_freedom: _Optional[int] = ..., joints: _Optional[_Iterable[_Union[Joint, _Mapping]]] = ..., links: _Optional[_Iterable[_Union[Link, _Mapping]]] = ..., root: _Optional[int] = ..., self_pairs: _Optional[_Iterable[_Union[LinkPair, _Mapping]]] = ..., excluded_pairs: _Optional[_Iterable[_Union[ExcludedPair, _Mapping]]] = ..., groups: _Optional[_Iterable[_Union[JointGroup, _Mapping]]] = ...) -> None: ...
 
 class Joint(_message.Message):
-    __slots__ = ("name", "kind", "first", "width", "lower", "upper", "parent_link", "child_link", "mimics", "velocity")
+    __slots__ = ("name", "kind", "first", "width", "lower", "upper", "parent", "child")
     NAME_FIELD_NUMBER: _ClassVar[int]
     KIND_FIELD_NUMBER: _ClassVar[int]
     FIRST_FIELD_NUMBER: _ClassVar[int]
     WIDTH_FIELD_NUMBER: _ClassVar[int]
     LOWER_FIELD_NUMBER: _ClassVar[int]
     UPPER_FIELD_NUMBER: _ClassVar[int]
-    PARENT_LINK_FIELD_NUMBER: _ClassVar[int]
-    CHILD_LINK_FIELD_NUMBER: _ClassVar[int]
-    MIMICS_FIELD_NUMBER: _ClassVar[int]
-    VELOCITY_FIELD_NUMBER: _ClassVar[int]
+    PARENT_FIELD_NUMBER: _ClassVar[int]
+    CHILD_FIELD_NUMBER: _ClassVar[int]
     name: str
     kind: JointKind
     first: int
     width: int
     lower: float
     upper: float
-    parent_link: str
-    child_link: str
-    mimics: _containers.RepeatedScalarFieldContainer[str]
-    velocity: float
-    def __init__(self, name: _Optional[str] = ..., kind: _Optional[_Union[JointKind, str]] = ..., first: _Optional[int] = ..., width: _Optional[int] = ..., lower: _Optional[float] = ..., upper: _Optional[float] = ..., parent_link: _Optional[str] = ..., child_link: _Optional[str] = ..., mimics: _Optional[_Iterable[str]] = ..., velocity: _Optional[float] = ...) -> None: ...
+    parent: int
+    child: int
+    def __init__(self, name: _Optional[str] = ..., kind: _Optional[_Union[JointKind, str]] = ..., first: _Optional[int] = ..., width: _Optional[int] = ..., lower: _Optional[float] = ..., upper: _Optional[float] = ..., parent: _Optional[int] = ..., child: _Optional[int] = ...) -> None: ...
 
 class Link(_message.Message):
     __slots__ = ("name", "shapes")
@@ -132,11 +128,29 @@ class ExcludedPair(_message.Message):
     def __init__(self, a: _Optional[int] = ..., b: _Optional[int] = ..., reason: _Optional[str] = ...) -> None: ...
 
 class JointGroup(_message.Message):
-    __slots__ = ("name", "joints", "links")
+    __slots__ = ("name", "joints", "links", "states")
     NAME_FIELD_NUMBER: _ClassVar[int]
     JOINTS_FIELD_NUMBER: _ClassVar[int]
     LINKS_FIELD_NUMBER: _ClassVar[int]
+    STATES_FIELD_NUMBER: _ClassVar[int]
     name: str
-    joints: _containers.RepeatedScalarFieldContainer[str]
-    links: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, name: _Optional[str] = ..., joints: _Optional[_Iterable[str]] = ..., links: _Optional[_Iterable[str]] = ...) -> None: ...
+    joints: _containers.RepeatedScalarFieldContainer[int]
+    links: _containers.RepeatedScalarFieldContainer[int]
+    states: _containers.RepeatedCompositeFieldContainer[NamedState]
+    def __init__(self, name: _Optional[str] = ..., joints: _Optional[_Iterable[int]] = ..., links: _Optional[_Iterable[int]] = ..., states: _Optional[_Iterable[_Union[NamedState, _Mapping]]] = ...) -> None: ...
+
+class NamedState(_message.Message):
+    __slots__ = ("name", "positions")
+    NAME_FIELD_NUMBER: _ClassVar[int]
+    POSITIONS_FIELD_NUMBER: _ClassVar[int]
+    name: str
+    positions: _containers.RepeatedCompositeFieldContainer[JointPositions]
+    def __init__(self, name: _Optional[str] = ..., positions: _Optional[_Iterable[_Union[JointPositions, _Mapping]]] = ...) -> None: ...
+
+class JointPositions(_message.Message):
+    __slots__ = ("joint", "values")
+    JOINT_FIELD_NUMBER: _ClassVar[int]
+    VALUES_FIELD_NUMBER: _ClassVar[int]
+    joint: int
+    values: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, joint: _Optional[int] = ..., values: _Optional[_Iterable[float]] = ...) -> None: ...

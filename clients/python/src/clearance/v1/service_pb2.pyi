@@ -106,16 +106,14 @@ class ApplyRequest(_message.Message):
     def __init__(self, scene: _Optional[str] = ..., edits: _Optional[_Iterable[_Union[_scene_pb2.Edit, _Mapping]]] = ..., expected_epoch: _Optional[int] = ..., expected_revision: _Optional[int] = ..., idempotency_key: _Optional[str] = ...) -> None: ...
 
 class ApplyResponse(_message.Message):
-    __slots__ = ("epoch", "revision", "added", "warnings")
+    __slots__ = ("epoch", "revision", "added")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     ADDED_FIELD_NUMBER: _ClassVar[int]
-    WARNINGS_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     added: _containers.RepeatedScalarFieldContainer[int]
-    warnings: _containers.RepeatedScalarFieldContainer[str]
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., added: _Optional[_Iterable[int]] = ..., warnings: _Optional[_Iterable[str]] = ...) -> None: ...
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., added: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class HasAssetsRequest(_message.Message):
     __slots__ = ("sha256",)
