@@ -78,8 +78,7 @@ impl<V: Copy> PairTable<V> {
 
     /// The entry of exactly these two parties.
     pub(super) fn get(&self, a: PartyKey, b: PartyKey) -> Option<V> {
-        let row = self.row(a);
-        row.binary_search_by_key(&b, |(other, _)| *other).ok().map(|place| row[place].1)
+        value_in(self.row(a), b)
     }
 
     /// What holds for a pair; none if no entry speaks of it.
@@ -91,19 +90,24 @@ impl<V: Copy> PairTable<V> {
         if exact.is_some() || self.wide_entries == 0 {
             return exact;
         }
-        let everything = PartyKey::EVERYTHING;
-        let all = |pairs: &mut dyn Iterator<Item = (PartyKey, PartyKey)>| {
-            pairs.filter_map(|(a, b)| self.get(a, b)).reduce(self.cautious)
-        };
-        let one_and_many = || a.many.iter().map(|m| (*m, b.one)).chain(b.many.iter().map(|m| (*m, a.one)));
-        let one_and_everything = || [(a.one, everything), (b.one, everything)].into_iter();
-        let many_and_many = || a.many.iter().flat_map(|m| b.many.iter().map(|n| (*m, *n)));
-        let many_and_everything = || a.many.iter().chain(b.many).map(|m| (*m, everything));
-        all(&mut one_and_many())
-            .or_else(|| all(&mut one_and_everything()))
-            .or_else(|| all(&mut many_and_many()))
-            .or_else(|| all(&mut many_and_everything()))
-            .or_else(|| self.get(everything, everything))
+        let mut best: Option<(usize, V)> = None;
+        for (party, far) in parties_of(a) {
+            let row = self.row(party);
+            if row.is_empty() {
+                continue;
+            }
+            for (other, other_far) in parties_of(b) {
+                let Some(value) = value_in(row, other) else { continue };
+                // Ranks in the order of the list above: 0, 1, 2, 4, 5, 8.
+                let rank = 3 * far.min(other_far) + far.max(other_far);
+                best = match best {
+                    Some((least, decided)) if least == rank => Some((rank, (self.cautious)(decided, value))),
+                    Some((least, _)) if least < rank => best,
+                    _ => Some((rank, value)),
+                };
+            }
+        }
+        best.map(|(_, value)| value)
     }
 
     /// All values, each entry's once or twice.
@@ -138,4 +142,15 @@ impl<V: Copy> PairTable<V> {
             self.rows.remove(party.number());
         }
     }
+}
+
+fn value_in<V: Copy>(row: &[(PartyKey, V)], party: PartyKey) -> Option<V> {
+    row.binary_search_by_key(&party, |(other, _)| *other).ok().map(|place| row[place].1)
+}
+
+/// The parties that speak of a body or link, each with how far it is from naming it alone: 0 itself, 1 its groups or
+/// its robot, 2 everything.
+fn parties_of(member: Member<'_>) -> impl Iterator<Item = (PartyKey, usize)> {
+    let many = member.many.iter().map(|party| (*party, 1));
+    std::iter::once((member.one, 0)).chain(many).chain(std::iter::once((PartyKey::EVERYTHING, 2)))
 }
