@@ -12,6 +12,10 @@ use crate::geometry::Aabb;
 /// grown by this many times its own fattening.
 const LOOSE_FATTENINGS: f64 = 4.0;
 
+/// A moved leaf stays where it is as long as its parent's cost grows by no more than this factor. Larger makes moves
+/// cheaper and lets the tree get worse in between; at 1 nearly every move would be a removal and an insertion.
+const LARGEST_STRETCH: f64 = 1.25;
+
 /// How far the heights of two siblings may differ. A leaf is never put beside a taller node, and siblings that come
 /// farther apart are brought closer even where that costs surface: boxes nested in each other, or spaced ever wider,
 /// would otherwise make the tree a chain. At 16 the height stays below some 5 times the least possible one in the worst
@@ -37,7 +41,7 @@ impl DynamicTree {
     }
 
     /// Gives an entry another box, metres. Says whether the tree had to change for it: not as long as the box stays in
-    /// the fattened one.
+    /// the fattened one. Small moves beyond that change boxes on the way to the root, large ones the entry's place.
     pub fn move_to(&mut self, proxy: ProxyId, tight: Aabb) -> bool {
         debug_assert!(is_proper(&tight), "the tree was given {tight:?}");
         self.leaves[proxy.0].tight = tight;
@@ -48,8 +52,27 @@ impl DynamicTree {
         if fat.contains(&tight) && loosest.contains(fat) {
             return false;
         }
-        self.detach(node);
-        self.attach(proxy.0);
+        if !self.stretch(node, &wanted) {
+            self.detach(node);
+            self.attach(proxy.0);
+        }
+        true
+    }
+
+    /// Gives a leaf's node another fat box where it stands, if its parent hardly grows by that: bodies that move a
+    /// little at a time keep their place, and rotations on the way up are enough to keep the tree good.
+    fn stretch(&mut self, node: u32, fat: &Aabb) -> bool {
+        let parent = self.nodes[node].parent;
+        if parent != NONE {
+            let Node { fat: before, left, right, .. } = &self.nodes[parent];
+            let sibling = if *left == node { *right } else { *left };
+            let after = self.nodes[sibling].fat.union(fat);
+            if visit_cost(&after) > LARGEST_STRETCH * visit_cost(before) {
+                return false;
+            }
+        }
+        self.nodes[node].fat = *fat;
+        self.refit_from(parent);
         true
     }
 

@@ -311,6 +311,32 @@ fn churn_leaves_health_flat() {
 }
 
 #[test]
+fn many_small_moves_leave_a_tree_like_a_new_one() {
+    let count = 400_u64;
+    let mut places: Vec<Vec3> =
+        (0..count).map(|i| Vec3::new((i % 20) as f64, (i / 20) as f64, (i * 7919 % 11) as f64)).collect();
+    let mut tree = DynamicTree::new();
+    let around = |at: &Vec3| Aabb::centred(*at, Vec3::repeat(0.5));
+    let proxies: Vec<ProxyId> = (0..).zip(&places).map(|(i, at)| tree.insert(around(at), i)).collect();
+    // Each box goes its own way, ten box lengths altogether.
+    for _ in 0..100 {
+        for (i, (proxy, place)) in (0..).zip(proxies.iter().zip(&mut places)) {
+            let (sin, cos) = libm::sincos(f64::from(i));
+            *place += 0.1 * Vec3::new(sin, cos, 0.0);
+            tree.move_to(*proxy, around(place));
+        }
+    }
+    tree.validate().unwrap();
+    let mut fresh = DynamicTree::new();
+    for (i, at) in (0..).zip(&places) {
+        fresh.insert(around(at), i);
+    }
+    let (worn, fresh) = (tree.health(), fresh.health());
+    assert!(worn.surface_cost < 1.3 * fresh.surface_cost, "{worn:?} {fresh:?}");
+    assert!(worn.height <= fresh.height + 6, "{worn:?} {fresh:?}");
+}
+
+#[test]
 fn a_box_that_shrinks_far_below_its_fat_box_is_put_in_anew() {
     let mut tree = DynamicTree::new();
     let proxy = tree.insert(Aabb::centred(Vec3::zeros(), Vec3::repeat(100.0)), 0);
