@@ -5,6 +5,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+#[cfg(feature = "grpc")]
+use super::demo::{self, Demo};
 use super::exit_code::Exit;
 use super::pairs::{self, Pairs};
 use super::serve::{self, Serve};
@@ -20,6 +22,9 @@ struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    /// A tour: a daemon, a robot arm in real scenes, real questions, and what an edit changes.
+    #[cfg(feature = "grpc")]
+    Demo(Demo),
     /// The distance of two shapes, case by case: JSON lines in, JSON lines out.
     Pairs(Pairs),
     /// The daemon: answers questions about scenes until it is told to end.
@@ -33,6 +38,8 @@ enum Command {
 pub fn run() -> ExitCode {
     let mut output = io::stdout().lock();
     let ended = match Arguments::parse().command {
+        #[cfg(feature = "grpc")]
+        Command::Demo(arguments) => demo::run(&arguments, &mut output),
         Command::Pairs(arguments) => pairs::run(&arguments, &mut output),
         Command::Serve(arguments) => return serve::run(&arguments, &mut output).into(),
         Command::States(arguments) => states::run(&arguments, &mut output),

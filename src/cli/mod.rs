@@ -3,6 +3,8 @@
 mod backend;
 mod case;
 mod command;
+#[cfg(feature = "grpc")]
+mod demo;
 mod exit_code;
 mod json_field;
 mod pairs;

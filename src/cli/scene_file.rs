@@ -53,9 +53,16 @@ pub struct State {
 /// # Errors
 /// Names file and field.
 pub fn read_scenes(path: &Path) -> Result<Vec<SceneEntry>, String> {
-    let document: Value =
-        serde_json::from_str(&read_text(path)?).map_err(|error| format!("{}: {error}", path.display()))?;
-    scenes_of(&document).map_err(|error| format!("{}: {error}", path.display()))
+    scenes_from(&read_text(path)?, &path.display().to_string())
+}
+
+/// Reads the text of a scene file that is called `name`.
+///
+/// # Errors
+/// Names file and field.
+pub fn scenes_from(text: &str, name: &str) -> Result<Vec<SceneEntry>, String> {
+    let document: Value = serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))?;
+    scenes_of(&document).map_err(|error| format!("{name}: {error}"))
 }
 
 fn scenes_of(document: &Value) -> Result<Vec<SceneEntry>, FieldError> {
@@ -79,9 +86,14 @@ fn scene_of(scene: &Field) -> Result<SceneEntry, FieldError> {
 /// # Errors
 /// The file cannot be read.
 pub fn read_states(path: &Path, scenes: usize, degrees_of_freedom: usize) -> Result<Vec<StateLine>, String> {
-    let text = read_text(path)?;
+    Ok(states_from(&read_text(path)?, scenes, degrees_of_freedom))
+}
+
+/// Reads the text of a file of joint vectors.
+#[must_use]
+pub fn states_from(text: &str, scenes: usize, degrees_of_freedom: usize) -> Vec<StateLine> {
     let lines = text.lines().filter(|line| !line.trim().is_empty());
-    Ok(lines.map(|line| state_line(line, scenes, degrees_of_freedom)).collect())
+    lines.map(|line| state_line(line, scenes, degrees_of_freedom)).collect()
 }
 
 fn state_line(line: &str, scenes: usize, degrees_of_freedom: usize) -> StateLine {

@@ -94,7 +94,9 @@ impl AnswerLine {
 }
 
 impl Names<'_> {
-    fn of(&self, side: &Side) -> String {
+    /// The name of a side.
+    #[must_use]
+    pub fn of(&self, side: &Side) -> String {
         match side {
             Side::Link { link, .. } => self.links[*link as usize].clone(),
             Side::Body { id, .. } => self.bodies.get(id).cloned().unwrap_or_else(|| format!("body {id}")),
