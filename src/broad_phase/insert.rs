@@ -16,6 +16,10 @@ const LOOSE_FATTENINGS: f64 = 4.0;
 /// cheaper and lets the tree get worse in between; at 1 nearly every move would be a removal and an insertion.
 const LARGEST_STRETCH: f64 = 1.25;
 
+/// After so many changes of its box in one place a leaf gets a new place all the same: steps that are small one by one
+/// add up. More makes moves cheaper and the tree worse.
+const MOST_STRETCHES: u32 = 7;
+
 /// How far the heights of two siblings may differ. A leaf is never put beside a taller node, and siblings that come
 /// farther apart are brought closer even where that costs surface: boxes nested in each other, or spaced ever wider,
 /// would otherwise make the tree a chain. At 16 the height stays below some 5 times the least possible one in the worst
@@ -26,7 +30,7 @@ impl DynamicTree {
     /// Adds an entry: a box, metres, and the caller's number for it.
     pub fn insert(&mut self, tight: Aabb, payload: u64) -> ProxyId {
         debug_assert!(is_proper(&tight), "the tree was given {tight:?}");
-        let leaf = self.allocate_leaf(Leaf { tight, payload, node: NONE });
+        let leaf = self.allocate_leaf(Leaf { tight, payload, node: NONE, stretches: 0 });
         self.attach(leaf);
         self.count += 1;
         ProxyId(leaf)
@@ -52,16 +56,20 @@ impl DynamicTree {
         if fat.contains(&tight) && loosest.contains(fat) {
             return false;
         }
-        if !self.stretch(node, &wanted) {
+        if !self.stretch(proxy.0, &wanted) {
             self.detach(node);
             self.attach(proxy.0);
         }
         true
     }
 
-    /// Gives a leaf's node another fat box where it stands, if its parent hardly grows by that: bodies that move a
-    /// little at a time keep their place, and rotations on the way up are enough to keep the tree good.
-    fn stretch(&mut self, node: u32, fat: &Aabb) -> bool {
+    /// Gives a leaf another fat box in the place it has, if its parent hardly grows by that: for bodies that move a
+    /// little at a time, rotations on the way up keep the tree good for a while.
+    fn stretch(&mut self, leaf: u32, fat: &Aabb) -> bool {
+        let Leaf { node, stretches, .. } = self.leaves[leaf];
+        if stretches >= MOST_STRETCHES {
+            return false;
+        }
         let parent = self.nodes[node].parent;
         if parent != NONE {
             let Node { fat: before, left, right, .. } = &self.nodes[parent];
@@ -71,6 +79,7 @@ impl DynamicTree {
                 return false;
             }
         }
+        self.leaves[leaf].stretches += 1;
         self.nodes[node].fat = *fat;
         self.refit_from(parent);
         true
@@ -81,6 +90,7 @@ impl DynamicTree {
         let fat = fattened(&self.leaves[leaf].tight);
         let node = self.allocate_node(Node { fat, parent: NONE, left: NONE, right: leaf, height: 0 });
         self.leaves[leaf].node = node;
+        self.leaves[leaf].stretches = 0;
         if self.root == NONE {
             self.root = node;
             return;

@@ -62,6 +62,8 @@ pub(super) struct Leaf {
     pub(super) payload: u64,
     /// [`NONE`] for a free leaf.
     pub(super) node: u32,
+    /// How often the node's box was changed since the leaf got its place.
+    pub(super) stretches: u32,
 }
 
 impl Node {
