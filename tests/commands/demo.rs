@@ -1,16 +1,14 @@
 //! `clearance demo`, as a new user runs it.
 
 use std::collections::BTreeMap;
-use std::process::Command;
 
-use serde_json::Value;
+use super::{clearance, json_lines};
 
 #[test]
 fn the_demo_shows_three_scenes_an_edit_and_what_it_changed() {
-    let done = Command::new(env!("CARGO_BIN_EXE_clearance")).args(["demo", "--json"]).output().unwrap();
+    let done = clearance(&["demo", "--json"]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let lines: Vec<Value> =
-        String::from_utf8(done.stdout).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let lines = json_lines(&done.stdout);
     let mut steps = BTreeMap::new();
     for line in &lines {
         *steps.entry(line["step"].as_str().unwrap()).or_insert(0) += 1;
@@ -38,7 +36,7 @@ fn the_demo_shows_three_scenes_an_edit_and_what_it_changed() {
 
 #[test]
 fn the_demo_for_people_names_verdicts_pairs_and_speed() {
-    let done = Command::new(env!("CARGO_BIN_EXE_clearance")).arg("demo").output().unwrap();
+    let done = clearance(&["demo"]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let text = String::from_utf8(done.stdout).unwrap();
     for part in ["table top", "shelf", "cage", "FREE", "COLLISION", " mm ", "forearm_link_0", "states a second"] {
