@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tokio::sync::oneshot;
+use tokio::task::JoinError;
 
 use super::Config;
 use crate::service::{Door, Service};
@@ -14,9 +15,15 @@ use crate::transports::grpc;
 #[derive(Debug)]
 pub struct Daemon {
     service: Arc<Service>,
+    doors: Doors,
+    drain: Duration,
+}
+
+/// The doors this program was built with.
+#[derive(Debug)]
+struct Doors {
     #[cfg(feature = "grpc")]
     grpc: grpc::Listening,
-    drain: Duration,
 }
 
 /// Why a daemon did not begin.
@@ -60,16 +67,9 @@ impl Daemon {
     /// [`StartError`].
     pub async fn build(config: &Config) -> Result<Self, StartError> {
         let service = Service::new(&config.service).map_err(|error| StartError::Threads(error.to_string()))?;
-        #[cfg(feature = "grpc")]
-        let grpc = config.grpc.bind().await?;
-        #[cfg(feature = "grpc")]
-        service.add_door(grpc.door());
-        Ok(Self {
-            service,
-            #[cfg(feature = "grpc")]
-            grpc,
-            drain: config.drain,
-        })
+        let doors = Doors::open(config).await?;
+        doors.list().into_iter().for_each(|door| service.add_door(door));
+        Ok(Self { service, doors, drain: config.drain })
     }
 
     /// What stands behind the doors.
@@ -88,19 +88,18 @@ impl Daemon {
     ///
     /// # Errors
     /// A door closed by itself.
-    #[cfg(feature = "grpc")]
     pub async fn run(self, stop: impl Future<Output = ()>) -> Result<Drained, RunError> {
-        let (drain, told_to_drain) = oneshot::channel();
-        let serving = self.grpc.serve(Arc::clone(&self.service), async { told_to_drain.await.unwrap_or_default() });
-        let mut serving = tokio::spawn(serving);
+        let (drain, told_to_drain) = oneshot::channel::<()>();
+        // A sender that is gone means the same as one that speaks.
+        let told_to_drain = async { told_to_drain.await.unwrap_or_default() };
+        let mut serving = tokio::spawn(self.doors.serve(Arc::clone(&self.service), told_to_drain));
         tokio::select! {
             ended = &mut serving => return Err(closed(ended)),
             () = stop => {}
         }
         tracing::info!(seconds = self.drain.as_secs(), "draining");
         self.service.begin_drain();
-        // The door may have closed by itself meanwhile; then there is nobody to tell.
-        let _ = drain.send(());
+        drop(drain);
         match tokio::time::timeout(self.drain, &mut serving).await {
             Ok(Ok(Ok(()))) => Ok(Drained::Clean),
             Ok(ended) => Err(closed(ended)),
@@ -110,25 +109,57 @@ impl Daemon {
             }
         }
     }
+}
 
-    /// A daemon built without doors has nothing to serve; it waits to be told to end.
-    ///
-    /// # Errors
-    /// None.
-    #[cfg(not(feature = "grpc"))]
-    pub async fn run(self, stop: impl Future<Output = ()>) -> Result<Drained, RunError> {
-        stop.await;
-        Ok(Drained::Clean)
+impl Doors {
+    #[cfg(feature = "grpc")]
+    async fn open(config: &Config) -> Result<Self, StartError> {
+        Ok(Self { grpc: config.grpc.bind().await? })
+    }
+
+    #[cfg(feature = "grpc")]
+    fn list(&self) -> Vec<Door> {
+        vec![self.grpc.door()]
+    }
+
+    /// Serves every door until `drain` comes, then until what is under way is answered.
+    #[cfg(feature = "grpc")]
+    async fn serve(
+        self,
+        service: Arc<Service>,
+        drain: impl Future<Output = ()> + Send + 'static,
+    ) -> Result<(), RunError> {
+        let served = self.grpc.serve(service, drain).await;
+        served.map_err(|error| RunError::Closed { door: "grpc", problem: error.to_string() })
     }
 }
 
-/// What to say of a door that ended by itself.
-#[cfg(feature = "grpc")]
-fn closed<E: std::error::Error>(ended: Result<Result<(), E>, tokio::task::JoinError>) -> RunError {
-    let problem = match ended {
-        Ok(Ok(())) => "no reason given".to_owned(),
-        Ok(Err(error)) => error.to_string(),
-        Err(error) => error.to_string(),
-    };
-    RunError::Closed { door: "grpc", problem }
+/// A program built without doors: nobody can ask, and nothing can go wrong.
+#[cfg(not(feature = "grpc"))]
+impl Doors {
+    async fn open(_config: &Config) -> Result<Self, StartError> {
+        Ok(Self {})
+    }
+
+    fn list(&self) -> Vec<Door> {
+        Vec::new()
+    }
+
+    async fn serve(
+        self,
+        _service: Arc<Service>,
+        drain: impl Future<Output = ()> + Send + 'static,
+    ) -> Result<(), RunError> {
+        drain.await;
+        Ok(())
+    }
+}
+
+/// What to say of doors that closed before they were told to.
+fn closed(ended: Result<Result<(), RunError>, JoinError>) -> RunError {
+    match ended {
+        Ok(Ok(())) => RunError::Closed { door: "last", problem: "no reason given".to_owned() },
+        Ok(Err(error)) => error,
+        Err(error) => RunError::Closed { door: "last", problem: error.to_string() },
+    }
 }

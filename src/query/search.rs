@@ -92,10 +92,11 @@ impl<'a> Search<'a> {
         if margins_matter { for_distance.max(self.plan.largest_margin) } else { for_distance }
     }
 
-    /// Whether more pairs cannot change the answer.
+    /// Whether more pairs cannot change the answer, or the time for them has run out: an item that was cut short is not
+    /// answered at all.
     pub fn is_settled(&self) -> bool {
         let only_verdict = !self.plan.wants.distance && !self.plan.wants.pairs;
-        only_verdict && self.verdict == Verdict::Collision
+        (only_verdict && self.verdict == Verdict::Collision) || (self.plan.stop)()
     }
 
     /// Measures a pair as far as it matters. `margin` is the pair's own. A pair of two unbounded shapes is left out.

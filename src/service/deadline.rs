@@ -16,9 +16,9 @@ pub struct Patience {
 }
 
 /// The part of a transport's timeout that is kept back, so that an answer cut by it still arrives in time.
-const KEPT_BACK: f64 = 0.05;
+const KEPT_BACK: f64 = 0.1;
 /// More than this is never kept back.
-const KEPT_BACK_AT_MOST: Duration = Duration::from_millis(50);
+const KEPT_BACK_AT_MOST: Duration = Duration::from_millis(100);
 
 /// The moment a request stops at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

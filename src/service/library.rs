@@ -132,3 +132,31 @@ impl Library {
         self.made.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Core;
+
+    #[test]
+    fn a_mesh_that_is_in_use_is_made_once_for_each_way_to_use_it() {
+        let library = Library::new(&Limits::default(), Admission::new("max_uploads_in_flight", 1));
+        let file = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        let hash = ContentHash::of(file);
+        let mut upload = library.assets().begin_upload(hash, file.len() as u64).unwrap();
+        upload.push(file).unwrap();
+        upload.finish().unwrap();
+        let hull = |scale: f64| {
+            let reading = MeshReading { format: MeshFormat::Obj, mode: MeshUse::Hull, scale: Vec3::repeat(scale) };
+            let shape = library.mesh_shape(hash, &reading).unwrap();
+            let Core::Convex(hull) = shape.core() else { panic!("{shape:?}") };
+            Arc::clone(hull)
+        };
+        let first = hull(1.0);
+        assert!(Arc::ptr_eq(&first, &hull(1.0)));
+        assert!(!Arc::ptr_eq(&first, &hull(2.0)));
+        drop(first);
+        hull(3.0);
+        assert_eq!(library.made().len(), 1, "what nobody uses is forgotten");
+    }
+}

@@ -6,8 +6,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::ServiceError;
 use super::assets::{Assets, ContentHash};
+use crate::geometry::mesh_file::{self, MeshFormat};
 use crate::limits::{LimitExceeded, Limits};
-use crate::robot::{MeshRequest, ModelOptions, RobotModel};
+use crate::robot::{MeshRequest, MeshUse, ModelOptions, RobotModel};
 
 /// What a robot is loaded from.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,16 +58,36 @@ impl Robots {
         if let Ok(known) = self.get(&id) {
             return Ok(known);
         }
+        let makes_hulls = |mode: Option<MeshUse>| mode == Some(MeshUse::Hull);
+        let hulls = makes_hulls(Some(options.all.mesh)) || options.links.values().any(|own| makes_hulls(own.mesh));
+        let mut too_large = None;
         let mut bytes_of = |request: &MeshRequest<'_>| {
             let hash = meshes.get(request.filename).ok_or("the request has no asset for it")?;
-            assets.get(*hash).map_err(|error| error.to_string())
+            let bytes = assets.get(*hash).map_err(|error| error.to_string())?;
+            self.check_size(request.filename, &bytes, hulls).map_err(|exceeded| {
+                too_large = Some(exceeded);
+                exceeded.to_string()
+            })?;
+            Ok(bytes)
         };
-        let model = RobotModel::from_urdf(urdf, srdf.as_deref(), &mut bytes_of, options)
-            .map_err(|error| ServiceError::invalid("robot", error))?;
+        let model = RobotModel::from_urdf(urdf, srdf.as_deref(), &mut bytes_of, options);
+        if let Some(exceeded) = too_large {
+            return Err(ServiceError::Limit(exceeded));
+        }
+        let model = model.map_err(|error| ServiceError::invalid("robot", error))?;
         let mut by_id = self.by_id();
         LimitExceeded::check("max_robot_models", by_id.len() + 1, self.limits.max_robot_models)?;
         let model = Arc::clone(by_id.entry(id.clone()).or_insert_with(|| Arc::new(model)));
         Ok(LoadedRobot { id, model })
+    }
+
+    /// Hulls and trees take long to build for large meshes. A file that cannot be read is for the model to refuse.
+    fn check_size(&self, filename: &str, bytes: &[u8], hulls: bool) -> Result<(), LimitExceeded> {
+        let soup = MeshFormat::from_name(filename).and_then(|format| mesh_file::read(bytes, format));
+        let Ok(soup) = soup else { return Ok(()) };
+        LimitExceeded::check("max_mesh_triangles", soup.triangles.len(), self.limits.max_mesh_triangles)?;
+        let points = if hulls { soup.vertices.len() } else { 0 };
+        LimitExceeded::check("max_hull_points", points, self.limits.max_hull_points)
     }
 
     /// # Errors

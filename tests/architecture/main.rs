@@ -5,7 +5,7 @@
 
 mod floors;
 mod habits;
-mod operators_page;
+mod limits_page;
 mod source;
 
 use std::fs;

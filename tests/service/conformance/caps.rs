@@ -60,6 +60,8 @@ async fn requests_beyond_a_cap_are_refused_by_its_name(door: &impl Door) {
         beyond(cap, door.apply(apply(vec![add("a", shape(core), at(0.0, 0.0, 0.0))])).await);
     }
 
+    let stored = door.put_asset(announced(TETRAHEDRON), TETRAHEDRON).await.unwrap();
+    beyond("max_mesh_triangles", door.load_robot(load_with_mesh(&stored.sha256)).await);
     let robot = door.load_robot(load(ROBOT)).await.unwrap();
     beyond("max_robot_models", door.load_robot(v1::LoadRobotRequest { padding: 0.1, ..load(ROBOT) }).await);
     beyond("max_description_bytes", door.load_robot(load(&" ".repeat(2001))).await);

@@ -11,6 +11,7 @@ use crate::support::messages::*;
 through_every_door!(
     states_are_checked_against_the_scene,
     the_same_description_is_the_same_model,
+    meshes_come_from_what_was_uploaded,
     the_bulk_form_says_the_same,
     the_first_hit_stops_the_batch,
     wrong_numbers_of_joint_positions_are_refused,
@@ -58,6 +59,15 @@ async fn the_same_description_is_the_same_model(door: &impl Door) {
     assert_eq!(door.load_robot(load(ROBOT)).await.unwrap(), first);
     let padded = door.load_robot(v1::LoadRobotRequest { padding: 0.01, ..load(ROBOT) }).await.unwrap();
     assert_ne!(padded.id, first.id);
+}
+
+async fn meshes_come_from_what_was_uploaded(door: &impl Door) {
+    let refusal = door.load_robot(load_with_mesh(&announced(TETRAHEDRON).sha256)).await.unwrap_err();
+    assert_eq!(refusal.code, Code::InvalidArgument);
+    assert!(refusal.message.contains("corner.obj"), "{refusal:?}");
+    let stored = door.put_asset(announced(TETRAHEDRON), TETRAHEDRON).await.unwrap();
+    let robot = door.load_robot(load_with_mesh(&stored.sha256)).await.unwrap();
+    assert_eq!((robot.degrees_of_freedom, robot.links[0].shapes), (0, 1));
 }
 
 async fn the_bulk_form_says_the_same(door: &impl Door) {

@@ -114,6 +114,14 @@ pub fn load(urdf: &str) -> v1::LoadRobotRequest {
     v1::LoadRobotRequest { urdf: urdf.to_owned(), ..v1::LoadRobotRequest::default() }
 }
 
+/// A robot that is one link, whose shape is the hull of a mesh file.
+pub fn load_with_mesh(sha256: &str) -> v1::LoadRobotRequest {
+    let geometry = "<geometry><mesh filename='corner.obj'/></geometry>";
+    let urdf = format!("<robot name='r'><link name='a'><collision>{geometry}</collision></link></robot>");
+    let mesh = v1::MeshBinding { filename: "corner.obj".to_owned(), sha256: sha256.to_owned() };
+    v1::LoadRobotRequest { meshes: vec![mesh], mesh_mode: v1::MeshMode::Hull.into(), ..load(&urdf) }
+}
+
 pub fn add_robot(name: &str, model: &str) -> v1::Edit {
     edit(v1::edit::Kind::AddRobot(v1::AddRobot { name: name.to_owned(), model: model.to_owned(), base: None }))
 }
