@@ -5,7 +5,7 @@
 
 mod floors;
 mod habits;
-mod limits_page;
+mod operators_page;
 mod source;
 
 use std::fs;

@@ -1,7 +1,6 @@
 """The examples and the README do what they say; the generated code is that of the .proto files."""
 
 import filecmp
-import os
 import re
 import subprocess
 import sys
@@ -33,14 +32,18 @@ class Examples(DaemonTest):
         self.assertRegex(blocked, r"^blocked at step \d+ of 1000, \S+ % of the way: COLLISION\n")
         self.assertRegex(blocked, r"  forearm_link_0 and post: -\d")
 
-    def test_the_readme_runs(self) -> None:
-        blocks = re.findall(r"```python\n(.*?)```", (CLIENT / "README.md").read_text(), re.DOTALL)
-        self.assertGreater(len(blocks), 2)
-        program = "\n".join(blocks).replace("127.0.0.1:50551", self.address)
-        environment = {**os.environ, "UR5": str(UR5)}
-        done = subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, cwd=UR5, env=environment
-        )
+    def test_the_readme_of_the_client_runs(self) -> None:
+        self.run_readme(CLIENT / "README.md")
+
+    def test_the_readme_of_the_project_runs(self) -> None:
+        self.run_readme(ROOT / "README.md", "scene.delete()")
+
+    def run_readme(self, page: Path, ending: str = "") -> None:
+        blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
+        self.assertTrue(blocks)
+        program = "\n".join([*blocks, ending]).replace("127.0.0.1:50551", self.address)
+        # The page loads `ur5.urdf` from the folder it is run in.
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, cwd=UR5)
         self.assertEqual(done.returncode, 0, done.stderr)
 
 
