@@ -4,6 +4,8 @@
 mod demo;
 mod hard_cases;
 mod robot_states;
+#[cfg(feature = "grpc")]
+mod states_from_a_daemon;
 
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};

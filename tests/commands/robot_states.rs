@@ -1,10 +1,8 @@
-//! `clearance states` on the UR5 and its 400 states (`tests/data/README.md`), in-process and through a daemon.
+//! `clearance states` on the UR5 and its 400 states (`tests/data/README.md`).
 //!
 //! The oracle is `truth.jsonl`: deciding pairs were solved in 400-bit arithmetic.
 
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
 
 use serde_json::Value;
 
@@ -13,7 +11,8 @@ use crate::{clearance, data, json_lines, number};
 /// Metres within which a minimum has to be the truth's.
 const CLOSE: f64 = 1e-9;
 
-fn states(more: &[&str]) -> Vec<u8> {
+/// What the command prints for the 400 states, with more flags.
+pub fn states(more: &[&str]) -> Vec<u8> {
     let file = |name: &str| data("robot-ur5").join(name).to_str().unwrap().to_owned();
     let (urdf, srdf) = (file("ur5.urdf"), file("ur5.srdf"));
     let (scenes, queries) = (file("scenes.json"), file("queries.jsonl"));
@@ -34,35 +33,6 @@ fn sorted(pair: &Value) -> Vec<&str> {
     let mut names: Vec<&str> = pair.as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
     names.sort_unstable();
     names
-}
-
-/// A daemon on a free port; it ends with the test.
-struct Daemon {
-    process: Child,
-    address: String,
-}
-
-impl Daemon {
-    fn start() -> Self {
-        let mut process = Command::new(env!("CARGO_BIN_EXE_clearance"))
-            .args(["serve", "--grpc-address", "127.0.0.1:0"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
-        let address = line.trim().strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}"));
-        Self { process, address: format!("http://{address}") }
-    }
-}
-
-impl Drop for Daemon {
-    fn drop(&mut self) {
-        // It may be gone already, which is fine here.
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
 }
 
 #[test]
@@ -109,19 +79,6 @@ fn verdicts_alone_are_the_same_verdicts() {
         json_lines(&states(&["--want", want])).into_iter().map(|mut line| line["verdict"].take()).collect()
     };
     assert_eq!(verdicts("verdict"), verdicts("distance"));
-}
-
-#[test]
-#[cfg(feature = "grpc")]
-fn a_daemon_gives_the_same_bytes() {
-    let daemon = Daemon::start();
-    for want in ["verdict", "distance"] {
-        let here = states(&["--want", want]);
-        let there = states(&["--want", want, "--server", &daemon.address]);
-        assert!(here == there, "--want {want}");
-    }
-    let nobody = clearance(&["states", "--robot", "x", "--scenes", "x", "--states", "x"]);
-    assert_eq!(nobody.status.code(), Some(3), "a missing file");
 }
 
 #[test]
