@@ -12,6 +12,10 @@ use prost::Message;
 use tonic::{Code, Request};
 use tonic_health::pb::HealthCheckRequest;
 use tonic_health::pb::health_client::HealthClient;
+use tonic_reflection::pb::v1::ServerReflectionRequest;
+use tonic_reflection::pb::v1::server_reflection_client::ServerReflectionClient;
+use tonic_reflection::pb::v1::server_reflection_request::MessageRequest;
+use tonic_reflection::pb::v1::server_reflection_response::MessageResponse;
 
 use crate::support::door::{Door, Grpc, InProcess, Refusal};
 use crate::support::messages::*;
@@ -166,4 +170,24 @@ async fn the_daemon_tells_its_doors_caps_and_health() {
         let health = HealthClient::new(grpc.channel.clone()).check(request).await.unwrap().into_inner();
         assert_eq!(health.status, 1, "{service:?} is not SERVING");
     }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn tools_learn_the_services_and_their_messages_by_reflection() {
+    let grpc = Grpc::open(Limits::default()).await;
+    let ask = async |question| {
+        let request = ServerReflectionRequest { host: String::new(), message_request: Some(question) };
+        let mut client = ServerReflectionClient::new(grpc.channel.clone());
+        let mut answers = client.server_reflection_info(tokio_stream::once(request)).await.unwrap().into_inner();
+        watched("reflection", answers.message()).await.unwrap().unwrap().message_response.unwrap()
+    };
+    let MessageResponse::ListServicesResponse(listed) = ask(MessageRequest::ListServices(String::new())).await else {
+        panic!("not a list of services")
+    };
+    let names: Vec<&str> = listed.service.iter().map(|service| service.name.as_str()).collect();
+    for service in ["Assets", "Queries", "Robots", "Scenes", "Server"] {
+        assert!(names.contains(&format!("clearance.v1.{service}").as_str()), "{names:?}");
+    }
+    let symbol = MessageRequest::FileContainingSymbol("clearance.v1.CheckStatesRequest".to_owned());
+    assert!(matches!(ask(symbol).await, MessageResponse::FileDescriptorResponse(_)));
 }
