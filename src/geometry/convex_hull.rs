@@ -3,14 +3,13 @@
 use std::collections::HashMap;
 
 use super::shape::position;
-use super::tolerance::UNIT_ROUNDOFF;
-use super::{Aabb, InvalidShape, Vec3};
+use super::{Aabb, InvalidShape, Vec3, length};
 
 /// The convex hull of some points, possibly flat, a segment or a single point.
 ///
-/// Only the points are kept: a support function needs no faces. The hull builder's answer is used to leave out inner
-/// points, and it is checked against every input point first; where it fails the check (or gives up, as builders do on
-/// slivers), the distinct input points are kept as they are. So a hull is as exact as the points it was made from.
+/// Only the points are kept: a support function needs no faces. The hull builder's answer is used to leave out points that
+/// are well inside; a point that it passed over, but that is near its surface, is kept. Where the builder gives up, as
+/// builders do on slivers, all distinct points are kept. So a hull is as exact as the points it was made from.
 #[derive(Clone, Debug)]
 pub struct ConvexHull {
     points: Vec<Vec3>,
@@ -34,14 +33,7 @@ impl ConvexHull {
             position(|| format!("points[{i}]"), *p)?;
         }
         let distinct = distinct(points);
-        let points = extreme_points(&distinct).unwrap_or(distinct);
-        let bounds = Aabb::around(points.iter().copied());
-        let radius = points.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt();
-        let block = |chunk: &[Vec3]| {
-            [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
-        };
-        let blocks = points.chunks(LANES).map(block).collect();
-        Ok(Self { points, blocks, bounds, radius })
+        Ok(Self::spanned_by(extreme_points(&distinct).unwrap_or(distinct)))
     }
 
     /// The points that span the hull, in the order given, without duplicates.
@@ -88,9 +80,23 @@ impl ConvexHull {
         self.radius
     }
 
-    /// Every length multiplied by `factor`.
+    /// Every length multiplied by `factor`, which keeps the corners the corners.
     pub(super) fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
-        Self::new(&self.points.iter().map(|p| p * factor).collect::<Vec<_>>())
+        let points: Vec<Vec3> = self.points.iter().map(|p| p * factor).collect();
+        for (i, p) in points.iter().enumerate() {
+            position(|| format!("points[{i}]"), *p)?;
+        }
+        Ok(Self::spanned_by(points))
+    }
+
+    fn spanned_by(points: Vec<Vec3>) -> Self {
+        let bounds = Aabb::around(points.iter().copied());
+        let radius = points.iter().map(|p| length(*p)).fold(0.0, f64::max);
+        let block = |chunk: &[Vec3]| {
+            [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
+        };
+        let blocks = points.chunks(LANES).map(block).collect();
+        Self { points, blocks, bounds, radius }
     }
 }
 
@@ -136,34 +142,39 @@ fn extreme_points(points: &[Vec3]) -> Option<Vec<Vec3>> {
     if kept.iter().any(|kept| !kept) {
         let planes: Vec<Plane> =
             faces_by_point.iter().map(|face| Plane::through(*face, points, size)).collect::<Option<_>>()?;
-        let inner = points.iter().zip(&kept).filter(|(_, kept)| !**kept);
-        if inner.into_iter().any(|(p, _)| !planes.iter().all(|plane| plane.has_behind(*p))) {
-            return None;
+        for (p, kept) in points.iter().zip(&mut kept) {
+            *kept = *kept || !planes.iter().all(|plane| plane.has_deep_behind(*p));
         }
     }
     Some(points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(p, _)| *p).collect())
 }
 
-/// The plane of a face, and how far before it a point may lie and still count as behind: a few units in the last place
-/// of the hull's size.
+/// A point is left out only if it is this far behind every face, in units of the hull's size. The builder's faces are off
+/// by some 1e-15 of the size, and where two of them meet at an angle t the true hull may end 1e-15 / sin(t / 2) before
+/// their planes do; a hull whose faces meet at less than 1e-8 is thinner than this depth, so nothing in it is left out.
+const DEPTH_OF_INNER_POINTS: f64 = 1e-6;
+
+/// The plane of a face.
 struct Plane {
     point: Vec3,
     normal: Vec3,
-    slack: f64,
+    /// What the product with the normal has to stay below, for a point deep enough behind.
+    depth: f64,
 }
 
 impl Plane {
-    /// None for a face too thin to have a trustworthy plane: it encloses nothing.
+    /// None for a face too thin to have a plane that can be trusted to a millionth: it encloses nothing.
     fn through(face: [usize; 3], points: &[Vec3], size: f64) -> Option<Self> {
         let [a, b, c] = face.map(|i| points[i]);
         let normal = (b - a).cross(&(c - a));
         let area = normal.norm();
-        let thin = area <= 1e-3 * (b - a).norm() * (c - a).norm();
-        (!thin).then_some(Self { point: a, normal, slack: 4.0 * UNIT_ROUNDOFF * size * area })
+        // The negation also catches an area that is NaN by overflow.
+        let thin = !(area > 1e-8 * (b - a).norm() * (c - a).norm());
+        (!thin).then_some(Self { point: a, normal, depth: -DEPTH_OF_INNER_POINTS * size * area })
     }
 
-    fn has_behind(&self, p: Vec3) -> bool {
-        self.normal.dot(&(p - self.point)) <= self.slack
+    fn has_deep_behind(&self, p: Vec3) -> bool {
+        self.normal.dot(&(p - self.point)) < self.depth
     }
 }
 

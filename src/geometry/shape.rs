@@ -336,5 +336,11 @@ fn plane_equation(normal: Vec3, offset: f64) -> Result<(Vec3, f64), InvalidShape
     if !offset.is_finite() {
         return Err(InvalidShape::NotFinite { field: "offset".to_owned() });
     }
+    // How far the plane is from the origin; the largest component is within a factor of two of the normal's length.
+    let distance = (offset / normal.amax()).abs();
+    if distance > LARGEST_LENGTH {
+        let field = "offset / |normal|".to_owned();
+        return Err(InvalidShape::TooLarge { field, value: distance, limit: LARGEST_LENGTH });
+    }
     Ok((normal, offset))
 }

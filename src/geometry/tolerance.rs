@@ -1,4 +1,5 @@
-//! Every numeric constant of the kernel: value, unit, reason, and what breaks if it is changed.
+//! The numeric constants that proofs and several files rest on: value, unit, reason, and what breaks if it is changed.
+//! A constant that one algorithm alone uses stands at the top of its file.
 
 /// Unit roundoff of `f64`: the largest relative error of one correctly rounded operation.
 pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;

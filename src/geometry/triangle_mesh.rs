@@ -48,9 +48,9 @@ impl TriangleMesh {
     pub fn solid(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, InvalidShape> {
         let mut mesh = Self::surface(vertices, triangles)?;
         mesh.check_closed()?;
-        let volume = mesh.signed_volume();
-        // The negation also catches a volume that is NaN by overflow.
-        if !(volume > 0.0) {
+        let (unit_volume, volume) = mesh.signed_volume();
+        // The negation also catches the NaN of a mesh that is a point.
+        if !(unit_volume > 0.0) {
             return Err(InvalidShape::InsideOut { volume });
         }
         mesh.solid = true;
@@ -112,11 +112,16 @@ impl TriangleMesh {
         if self.solid { Self::solid(vertices, triangles) } else { Self::surface(vertices, triangles) }
     }
 
-    /// Sum of the signed volumes of the tetrahedra from the centre of the bounds to each triangle.
-    fn signed_volume(&self) -> f64 {
-        let c = self.bounds().center();
-        let tetrahedron = |[a, b, d]: [Vec3; 3]| (a - c).dot(&(b - c).cross(&(d - c)));
-        (0..self.triangles.len()).map(|i| tetrahedron(self.triangle(i))).sum::<f64>() / 6.0
+    /// Sum of the signed volumes of the tetrahedra from the centre of the bounds to each triangle: summed for a mesh of unit
+    /// size, so that the sign is right where the volume itself over- or underflows.
+    fn signed_volume(&self) -> (f64, f64) {
+        let (c, size) = (self.bounds().center(), self.bounds().half_extents().amax());
+        let tetrahedron = |corners: [Vec3; 3]| {
+            let [a, b, d] = corners.map(|v| (v - c) / size);
+            a.dot(&b.cross(&d))
+        };
+        let unit = (0..self.triangles.len()).map(|i| tetrahedron(self.triangle(i))).sum::<f64>() / 6.0;
+        (unit, unit * size * size * size)
     }
 
     /// Each directed edge must occur once, and so must its opposite.

@@ -18,7 +18,8 @@ impl Target<'_> {
     /// Bracket of the shapes, metres, from bounds on the (scaled) cores. Rounded outwards: the sum of the radii, the
     /// difference and the product round once each; four units in the last place cover them.
     pub fn bracket(&self, lower: f64, upper: f64) -> Bracket {
-        let slack = |bound: f64| 4.0 * UNIT_ROUNDOFF * (bound.abs() + self.radii);
+        let denormal = if self.scale == 1.0 { 0.0 } else { f64::MIN_POSITIVE };
+        let slack = |bound: f64| 4.0 * UNIT_ROUNDOFF * (bound.abs() + self.radii) + denormal;
         let (lower, upper) = (lower / self.scale, upper / self.scale);
         Bracket { lower: lower - self.radii - slack(lower), upper: upper - self.radii + slack(upper) }
     }
@@ -30,7 +31,7 @@ impl Target<'_> {
     pub fn is_met(&self, bracket: &Bracket) -> bool {
         match self.goal.depth {
             Depth::Verdict => false,
-            Depth::Distance | Depth::Penetration => self.goal.accuracy.is_met(bracket),
+            Depth::Distance | Depth::Penetration => self.goal.is_met(bracket),
         }
     }
 

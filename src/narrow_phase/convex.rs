@@ -11,7 +11,7 @@ use super::outcome::{Cost, Separation, Termination};
 use super::polytope::Polytope;
 use super::support::radius;
 use crate::geometry::tolerance::UNSCALED_EXTENT;
-use crate::geometry::{Core, Placement};
+use crate::geometry::{Core, Placement, length};
 
 /// A convex, bounded core in its place, with the radius of the ball swept over it.
 #[derive(Clone, Copy)]
@@ -26,11 +26,13 @@ pub(super) struct Convex<'a> {
 /// What is known about A and B when the goal is reached.
 pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     let b_in_a = Placement::relative(a.at, b.at);
-    let extent = radius(a.core) + radius(b.core) + b_in_a.translation.norm();
+    let extent = radius(a.core) + radius(b.core) + length(b_in_a.translation);
     let scale = scale_of(extent);
     let (core_a, core_b) = (scaled(a.core, scale), scaled(b.core, scale));
     let b_in_a = Placement { translation: b_in_a.translation * scale, ..b_in_a };
-    let placement_error = (a.placement_error + b.placement_error) * scale;
+    // Below the normal numbers roundings are absolute. A pair of nothing but zeros has none.
+    let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
+    let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
     let difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };

@@ -48,8 +48,11 @@ pub(super) fn epa(difference: &Difference, seeds: &[Vertex], known: Epa, target:
                 cost.supports += 1;
                 raise_lower(&mut best, direction, direction.dot(&difference.lowest(direction).w), difference);
             }
-            let met = target.is_met(&target.bracket(best.lower, best.upper));
-            best.termination = if met { Termination::Converged } else { Termination::RoundingFloor };
+            if target.is_met(&target.bracket(best.lower, best.upper)) {
+                best.termination = Termination::Converged;
+            } else if best.upper - best.lower <= 4.0 * difference.error {
+                best.termination = Termination::RoundingFloor;
+            }
             best
         }
         Start::Solid(mut polytope) => {

@@ -84,11 +84,20 @@ impl Goal<'_> {
         match self.depth {
             Depth::Penetration => false,
             Depth::Distance => bracket.upper <= 0.0,
-            Depth::Verdict => {
-                bracket.upper <= 0.0
-                    || (bracket.lower > 0.0 && (bracket.lower > self.margin || bracket.upper <= self.margin))
-            }
+            Depth::Verdict => self.gives_a_verdict(bracket),
         }
+    }
+
+    /// Whether the bracket is as narrow as asked. However loose that is, a bracket that straddles the verdict is not: a
+    /// pair does not become indeterminate because its distance was wanted less exactly.
+    #[must_use]
+    pub(super) fn is_met(&self, bracket: &Bracket) -> bool {
+        self.accuracy.is_met(bracket) && self.gives_a_verdict(bracket)
+    }
+
+    fn gives_a_verdict(&self, bracket: &Bracket) -> bool {
+        let apart = bracket.lower > 0.0 && (bracket.lower > self.margin || bracket.upper <= self.margin);
+        bracket.upper <= 0.0 || apart
     }
 }
 

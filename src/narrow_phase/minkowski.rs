@@ -4,7 +4,7 @@
 //! is in A's frame, so that nothing depends on where the pair is in the world.
 
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Core, Placement, Vec3};
+use crate::geometry::{Core, Placement, Vec3, length};
 
 use super::support::{radius, support};
 
@@ -33,7 +33,7 @@ pub(super) struct Difference<'a> {
 impl<'a> Difference<'a> {
     /// `placement_error`: how far a point of B may be from its stored place in A's frame by roundings before, metres.
     pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, placement_error: f64) -> Self {
-        let extent = radius(a) + radius(b) + b_in_a.translation.norm();
+        let extent = radius(a) + radius(b) + length(b_in_a.translation);
         Self { a, b, b_in_a, error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error }
     }
 

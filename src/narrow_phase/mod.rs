@@ -1,6 +1,6 @@
 //! How far apart two shapes are, as a proved bracket.
 //!
-//! [`separation`] is the door. Behind it, top down: `union` takes meshes and compounds apart, `convex` runs GJK and EPA on
+//! [`separation`] is the door. Behind it, top down: `union`, `pieces` and `walk` take meshes and compounds apart, `convex` runs GJK and EPA on
 //! a pair of cores, `unbounded` has the formula for half-spaces and planes. Below lie the Minkowski difference, its
 //! simplices and polytope, and the support functions.
 
@@ -11,6 +11,7 @@ mod gjk;
 mod goal;
 mod minkowski;
 mod outcome;
+mod pieces;
 mod polytope;
 mod separation;
 mod simplex;
@@ -18,6 +19,7 @@ mod solid;
 mod support;
 mod unbounded;
 mod union;
+mod walk;
 
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};

@@ -1,9 +1,9 @@
 //! The convex polytope EPA grows: a closed surface of triangles around vertices of the Minkowski difference.
 //!
-//! Which faces a new vertex sees is decided by an exact predicate on the stored vertices. A face in whose plane it lies
-//! is left alone, unless the vertex is on the line of the edge it is reached by, where a new face would be flat. So the
-//! surface is the exact convex hull of its vertices at every step: closed, without flat faces, and its horizon is always
-//! one loop. Rounding enters only in the normals and offsets, and there with a bound.
+//! Which faces a new vertex sees is decided by an exact predicate on the stored vertices; a face in whose plane it lies is
+//! not seen. So the surface is the exact convex hull of its vertices at every step: closed, its horizon one loop, and no
+//! new face is flat (the vertex is strictly beyond the seen face on each edge of the horizon, so it is not on the edge's
+//! line). Rounding enters only in the normals and offsets, and there with a bound.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -146,8 +146,7 @@ impl Polytope {
                     continue; // Seen already.
                 }
                 let (from, to) = (corners[i], corners[(i + 1) % 3]);
-                let side = self.side(beyond, vertex.w);
-                if side < 0.0 || (side == 0.0 && collinear(self.vertices[from].w, self.vertices[to].w, vertex.w)) {
+                if self.is_outside(beyond, &vertex) {
                     self.faces[beyond].alive = false;
                     open.push(beyond);
                 } else {
@@ -200,14 +199,6 @@ impl Polytope {
         let [a, b, c] = self.corners(face);
         orientation(a.w, b.w, c.w, point)
     }
-}
-
-/// Whether three points are on one line. Exact: they are when their shadows on all three coordinate planes are.
-fn collinear(a: Vec3, b: Vec3, c: Vec3) -> bool {
-    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
-        let shadow = |v: Vec3| robust::Coord { x: v[i], y: v[j] };
-        robust::orient2d(shadow(a), shadow(b), shadow(c)) == 0.0
-    })
 }
 
 #[cfg(test)]

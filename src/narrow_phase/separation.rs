@@ -3,10 +3,10 @@
 use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
-use super::solid::with_containment;
+use super::pieces::pieces;
 use super::support::is_convex;
-use super::union::{self, pieces};
-use crate::geometry::{Mat3, Placement, Shape, Vec3};
+use super::union;
+use crate::geometry::{Core, Mat3, Placement, Shape, Vec3};
 
 /// Two shapes without bounds, such as two half-spaces: their distance is not asked for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,9 +38,10 @@ pub fn separation(
         return Ok(convex::separation(one, other, goal));
     }
     let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
-    let (pieces_a, pieces_b) = (pieces(a, &own_frame), pieces(b, &Placement::relative(at_a, at_b)));
-    let surfaces = union::separation(&pieces_a, &pieces_b, goal).ok_or(UnboundedPair { a: a.kind(), b: b.kind() })?;
-    let found = with_containment(surfaces, &pieces_a, &pieces_b);
+    let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));
+    let pieces_a = pieces(a, &own_frame, composed);
+    let pieces_b = pieces(b, &Placement::relative(at_a, at_b), composed);
+    let found = union::separation(&pieces_a, &pieces_b, goal).ok_or(UnboundedPair { a: a.kind(), b: b.kind() })?;
     let point_on_a = at_a.point(found.point_on_a);
     let normal = at_a.direction(found.normal);
     Ok(Separation { normal, point_on_a, point_on_b: point_on_a + normal * found.signed_distance, ..found })

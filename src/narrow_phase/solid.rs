@@ -1,41 +1,43 @@
 //! Solid meshes: what lies inside collides, though it may touch no triangle.
 
-use super::outcome::{Bracket, Separation};
+use super::goal::Goal;
+use super::outcome::{Bracket, Separation, Termination};
+use super::pieces::{Piece, least_of_pieces, mesh_of};
 use super::support::{is_convex, support};
-use super::union::{Piece, deepest_possible};
-use crate::geometry::{Aabb, Core, Placement, TriangleMesh, Vec3};
+use crate::geometry::{Aabb, Core, Placement, TriangleMesh, Vec3, length};
 
-/// The separation of the surfaces, corrected where one piece is wholly inside another that is solid.
+/// The separation of the surfaces of two pieces, corrected where one is wholly inside the other and that is solid.
 ///
 /// Then the depth is at least the distance of the surfaces (a translation that frees the inner one has to take it
 /// through the outer's surface), and at most what slides their bounds apart along the best axis.
-pub(super) fn with_containment(surfaces: Separation, a: &[Piece], b: &[Piece]) -> Separation {
+pub(super) fn with_containment(surfaces: Separation, a: &Piece, b: &Piece, goal: &Goal) -> Separation {
     // Surfaces that are not proved apart: the triangles have said all there is to say.
-    if surfaces.bracket.lower <= 0.0 {
+    if surfaces.bracket.lower <= 0.0 || !(may_contain(a) || may_contain(b)) {
         return surfaces;
     }
-    let mut deepest: Option<f64> = None;
-    for pa in a {
-        for pb in b {
-            if contains(pa, pb) || contains(pb, pa) {
-                let freed = deepest_possible(pa, pb).unwrap_or(f64::MAX);
-                deepest = Some(deepest.map_or(freed, |d: f64| d.max(freed)));
-            }
-        }
+    let lower = least_of_pieces(a, b).min(-surfaces.bracket.lower);
+    if (goal.stop)() {
+        // No time to find out.
+        let bracket = Bracket { lower, upper: surfaces.bracket.upper };
+        return Separation { bracket, termination: Termination::IterationLimit, ..surfaces };
     }
-    let Some(freed) = deepest else { return surfaces };
-    let bracket = Bracket { lower: -freed.max(surfaces.bracket.lower), upper: -surfaces.bracket.lower };
+    if !(contains(a, b) || contains(b, a)) {
+        return surfaces;
+    }
+    let bracket = Bracket { lower, upper: -surfaces.bracket.lower };
     let signed_distance = (-surfaces.signed_distance).clamp(bracket.lower, bracket.upper);
-    Separation { bracket, signed_distance, normal: -surfaces.normal, ..surfaces }
+    let (normal, termination) = (-surfaces.normal, Termination::Decided);
+    Separation { bracket, signed_distance, normal, termination, ..surfaces }
+}
+
+fn may_contain(piece: &Piece) -> bool {
+    mesh_of(piece).is_some_and(TriangleMesh::is_solid)
 }
 
 /// Whether `outer` is a solid mesh with a part of `inner` in it. Their surfaces are apart, so one point tells for all of a
 /// connected part.
 fn contains(outer: &Piece, inner: &Piece) -> bool {
-    let Core::Mesh(mesh) = outer.shape.core() else { return false };
-    if !mesh.is_solid() {
-        return false;
-    }
+    let Some(mesh) = mesh_of(outer).filter(|mesh| mesh.is_solid()) else { return false };
     let inner_in_outer = Placement::relative(&outer.at, &inner.at);
     let is_in = |point: Vec3| {
         let point = inner_in_outer.point(point);
@@ -51,11 +53,11 @@ fn contains(outer: &Piece, inner: &Piece) -> bool {
 /// Whether a point, in the mesh's frame and not on its surface, is inside a solid mesh: by the sum of the solid angles
 /// of its triangles (van Oosterom and Strackee 1983), which is 4 pi inside and 0 outside.
 fn is_inside(mesh: &TriangleMesh, point: Vec3) -> bool {
+    // Directions to the corners: lengths cancel, and products of them could overflow.
     let solid_angle = |i: usize| {
-        let [a, b, c] = mesh.triangle(i).map(|v| v - point);
-        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        let [a, b, c] = mesh.triangle(i).map(|v| (v - point) / length(v - point));
         let volume = a.dot(&b.cross(&c));
-        let denominator = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        let denominator = 1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a);
         2.0 * libm::atan2(volume, denominator)
     };
     let total: f64 = (0..mesh.triangles().len()).map(solid_angle).sum();

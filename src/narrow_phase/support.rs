@@ -1,6 +1,6 @@
 //! Support functions: the point of a core that lies farthest in a direction.
 
-use crate::geometry::{Core, Vec3};
+use crate::geometry::{Aabb, Core, Vec3, length};
 
 /// A point of the convex, bounded core where `direction . x` is greatest, in the core's frame. Among equals the first.
 ///
@@ -57,10 +57,11 @@ pub(super) fn is_convex(core: &Core) -> bool {
 
 /// Largest distance of a point of the core from its origin; an upper bound within rounding, metres.
 pub(super) fn radius(core: &Core) -> f64 {
-    let farthest = |points: &[Vec3]| points.iter().map(Vec3::norm).fold(0.0, f64::max);
+    let farthest = |points: &[Vec3]| points.iter().map(|p| length(*p)).fold(0.0, f64::max);
+    let box_corner = |bounds: Aabb| length(bounds.min.abs().sup(&bounds.max.abs()));
     match core {
         Core::Point => 0.0,
-        Core::Cuboid { half_extents } => half_extents.norm(),
+        Core::Cuboid { half_extents } => length(*half_extents),
         Core::AxialSegment { half_length } => *half_length,
         Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => {
             libm::hypot(*radius, *half_length)
@@ -70,8 +71,8 @@ pub(super) fn radius(core: &Core) -> f64 {
         Core::Triangle(corners) => farthest(corners),
         Core::Segment(ends) => farthest(ends),
         Core::HalfSpace { .. } | Core::Plane { .. } => 0.0,
-        Core::Mesh(mesh) => mesh.bounds().min.abs().sup(&mesh.bounds().max.abs()).norm(),
-        Core::Compound(compound) => compound.bounds().min.abs().sup(&compound.bounds().max.abs()).norm(),
+        Core::Mesh(mesh) => box_corner(mesh.bounds()),
+        Core::Compound(compound) => box_corner(compound.bounds()),
     }
 }
 

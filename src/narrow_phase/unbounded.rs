@@ -2,9 +2,9 @@
 
 use super::convex::Convex;
 use super::outcome::{Bracket, Cost, Separation, Termination};
-use super::support::{radius, support, unit};
+use super::support::{radius, support};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Placement, Vec3};
+use crate::geometry::{Placement, Vec3, length};
 
 /// `{ x : normal . x <= offset }`, or its boundary alone when `thin`; swept by a ball, in its place.
 #[derive(Clone, Copy)]
@@ -18,14 +18,21 @@ pub(super) struct Unbounded<'a> {
     pub placement_error: f64,
 }
 
+impl Unbounded<'_> {
+    /// The unit normal, and the offset in metres along it.
+    pub fn upright(&self) -> (Vec3, f64) {
+        // Both are divided by the largest component first, so that normals of extreme length neither over- nor underflow.
+        let largest = self.normal.amax();
+        let direction = self.normal / largest;
+        let normal = direction.normalize();
+        (normal, self.offset / largest / direction.dot(&normal))
+    }
+}
+
 /// How far A is from `b`. Signed distance: n . a - offset/|normal| at the lowest point a of A, less the swept radii;
 /// from a plane, on whichever side A sticks out less.
 pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
-    let length = b.normal.norm();
-    let length = if length.is_normal() && length < 1e150 { length } else { b.normal.amax() };
-    // Twice, so that normals of extreme length come out as unit vectors too.
-    let normal = unit(b.normal / length).unwrap_or_else(Vec3::z);
-    let offset = b.offset / b.normal.dot(&normal);
+    let (normal, offset) = b.upright();
     let b_in_a = Placement::relative(a.at, b.at);
     let up = b_in_a.direction(normal);
     let height = |p: Vec3| up.dot(&(p - b_in_a.translation)) - offset;
@@ -40,7 +47,7 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
             (point, side, of_cores) = (highest, -1.0, -height(highest));
         }
     }
-    let extent = radius(a.core) + b_in_a.translation.norm() + offset.abs();
+    let extent = radius(a.core) + length(b_in_a.translation) + offset.abs();
     let radii = a.swept_radius + b.swept_radius;
     let error = UNIT_ROUNDOFF * (SUPPORT_ERROR_ULPS * extent + 4.0 * radii) + a.placement_error + b.placement_error;
     let signed_distance = of_cores - radii;

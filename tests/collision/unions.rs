@@ -165,3 +165,49 @@ fn a_compound_with_a_half_space_nearby_is_measured_part_by_part() {
     let found = separation(&floor, &pair, &at(0.0, 0.0, 0.0), &at(0.0, 0.0, 0.0), &Goal::penetration()).unwrap();
     assert!((found.signed_distance + 0.25).abs() < 1e-12 && found.subshape_b == 1, "{found:?}");
 }
+
+#[test]
+fn a_part_inside_a_solid_counts_though_another_part_touches_its_surface() {
+    let part = |shape: Shape, x: f64| Part { shape, pose: Pose::new(Vec3::x() * x, Quaternion::IDENTITY).unwrap() };
+    let cube = TriangleMesh::solid(rounded_cube(1).0, rounded_cube(1).1).unwrap();
+    let reach = cube.bounds().max.x;
+    let touching = Shape::cuboid(Vec3::new(0.5, 0.01, 0.01)).unwrap();
+    let row = Compound::new(vec![part(Shape::sphere(0.05).unwrap(), 0.0), part(touching, reach + 0.5)]).unwrap();
+    let (row, cube) = (Shape::compound(Arc::new(row)), Shape::mesh(Arc::new(cube)));
+    let here = at(0.0, 0.0, 0.0);
+    let found = separation(&row, &cube, &here, &here, &Goal::penetration()).unwrap();
+    assert!(found.bracket.upper < -0.1 && found.subshape_a == 0, "{found:?}");
+}
+
+#[test]
+fn huge_solids_hold_what_is_inside_them() {
+    let (vertices, triangles) = rounded_cube(4);
+    let vertices = vertices.into_iter().map(|v| v * 1e104).collect();
+    let cube = Shape::mesh(Arc::new(TriangleMesh::solid(vertices, triangles).unwrap()));
+    let here = at(0.0, 0.0, 0.0);
+    let found = separation(&cube, &Shape::sphere(1.0).unwrap(), &here, &here, &Goal::verdict()).unwrap();
+    assert!(found.bracket.upper <= 0.0, "{found:?}");
+}
+
+/// Oracle: the lowest vertex.
+#[test]
+fn a_mesh_over_a_half_space_is_as_high_as_its_lowest_vertex_and_boxes_prune_the_rest() {
+    let (vertices, triangles) = rounded_cube(4);
+    let floor = Shape::half_space(Vec3::new(0.3, -0.2, 2.0), 0.4).unwrap();
+    let wall = Shape::plane(Vec3::new(0.3, -0.2, 2.0), 0.4).unwrap();
+    let normal = Vec3::new(0.3, -0.2, 2.0);
+    let mut random = Random::new(23);
+    for _ in 0..20 {
+        let place = random.pose(2.0).placement();
+        let height = |v: &Vec3| (normal.dot(&place.point(*v)) - 0.4) / normal.norm();
+        let lowest = vertices.iter().map(height).fold(f64::INFINITY, f64::min);
+        let found = separation(&surface(), &floor, &place, &at(0.0, 0.0, 0.0), &Goal::penetration()).unwrap();
+        assert!((found.signed_distance - lowest).abs() < 1e-12, "{found:?}, {lowest}");
+        assert!((found.cost.pairs as usize) < triangles.len() / 2, "{found:?}");
+        let verdict = separation(&floor, &surface(), &at(0.0, 0.0, 0.0), &place, &Goal::verdict()).unwrap();
+        assert_eq!(verdict.bracket.upper <= 0.0, lowest <= 0.0);
+        assert!(verdict.bracket.lower <= lowest && lowest <= verdict.bracket.upper + 1e-12, "{verdict:?}, {lowest}");
+        let thin = separation(&surface(), &wall, &place, &at(0.0, 0.0, 0.0), &Goal::penetration()).unwrap();
+        assert!(thin.bracket.width() < 1e-9 && thin.bracket.lower.is_finite(), "{thin:?}");
+    }
+}

@@ -1,0 +1,67 @@
+//! Numbers at the ends of `f64`, and hulls that are all edge: each was once a wrong verdict or a panic.
+
+use clearance::geometry::{Shape, Vec3};
+use clearance::narrow_phase::{Accuracy, Goal, separation};
+
+use crate::samples::{Random, at};
+
+/// Oracle: the point is a convex combination of the hull's points, so the truth is a contact.
+#[test]
+fn hulls_with_sharp_edges_keep_the_points_on_them() {
+    let mut random = Random::new(31);
+    for _ in 0..300 {
+        let thickness = 10f64.powf(random.between(-4.0, -1.0));
+        let (a, b) = (Vec3::zeros(), Vec3::new(1.0, random.between(-0.3, 0.3), 0.0));
+        let back = Vec3::new(random.between(0.2, 0.8), -1.0, 0.0);
+        let on_edge = a + (b - a) * random.between(0.2, 0.8) + Vec3::y() * random.between(0.0, 1e-12);
+        let points = [a, b, back + Vec3::z() * thickness, back - Vec3::z() * thickness, on_edge];
+        let hull = Shape::convex(&points).unwrap();
+        let place = at(on_edge.x, on_edge.y, on_edge.z);
+        let found = separation(&hull, &Shape::point(), &at(0.0, 0.0, 0.0), &place, &Goal::penetration()).unwrap();
+        assert!(found.bracket.lower <= 0.0, "a point of the hull is called apart: {found:?}");
+    }
+}
+
+#[test]
+fn lengths_whose_squares_underflow_still_have_verdicts() {
+    for size in [1e-150, 1e-165, 1e-200, 1e-300] {
+        let cube = Shape::cuboid(Vec3::repeat(size)).unwrap();
+        let goal = Goal::penetration();
+        let apart = separation(&cube, &cube, &at(0.0, 0.0, 0.0), &at(3.0 * size, 0.0, 0.0), &goal).unwrap();
+        assert!(apart.bracket.lower > 0.9 * size && apart.bracket.upper < 1.1 * size, "{size:e}: {apart:?}");
+        let meeting = separation(&cube, &cube, &at(0.0, 0.0, 0.0), &at(size, 0.0, 0.0), &goal).unwrap();
+        assert!(meeting.bracket.upper < 0.0, "{size:e}: {meeting:?}");
+        let points = separation(&Shape::point(), &Shape::point(), &at(0.0, 0.0, 0.0), &at(size, 0.0, 0.0), &goal);
+        assert!(points.unwrap().bracket.lower > 0.0, "{size:e}");
+    }
+    // At the very end of the range a bracket may span zero, but it holds the truth and nothing panics.
+    let tiny = 5e-324;
+    let sphere = Shape::sphere(tiny).unwrap();
+    let found = separation(&sphere, &sphere, &at(0.0, 0.0, 0.0), &at(1e-310, 0.0, 0.0), &Goal::penetration()).unwrap();
+    assert!(found.bracket.lower <= 1e-310 && 1e-310 <= found.bracket.upper + 2.0 * tiny, "{found:?}");
+}
+
+#[test]
+fn normals_of_extreme_length_mean_their_direction() {
+    let ball = Shape::sphere(0.9).unwrap();
+    for scale in [5e-324, 1e-300, 1.0, 1e150] {
+        let floor = Shape::half_space(Vec3::new(scale, 0.0, 0.0), -2.0 * scale).unwrap();
+        let found = separation(&ball, &floor, &at(0.0, 0.0, 0.0), &at(0.0, 0.0, 0.0), &Goal::penetration()).unwrap();
+        assert!((found.signed_distance - 1.1).abs() < 1e-12, "{scale:e}: {found:?}");
+    }
+    let error = Shape::half_space(Vec3::new(1e-300, 0.0, 0.0), 1e10).unwrap_err();
+    assert!(error.to_string().starts_with("offset / |normal|"), "{error}");
+}
+
+#[test]
+fn a_loose_tolerance_does_not_make_a_decidable_pair_indeterminate() {
+    let ball = Shape::sphere(0.5).unwrap();
+    let hull = Shape::ellipsoid(Vec3::new(0.4, 0.3, 0.2)).unwrap();
+    for (distance, margin) in [(1.3, 0.0), (1.3, 0.35), (0.95, 0.04)] {
+        let accuracy = Accuracy { absolute: 10.0, relative: 0.0 };
+        let goal = Goal { accuracy, margin, ..Goal::penetration() };
+        let found = separation(&ball, &hull, &at(0.0, 0.0, 0.0), &at(distance, 0.1, 0.0), &goal).unwrap();
+        let bracket = found.bracket;
+        assert!(bracket.lower > 0.0 && (bracket.lower > margin || bracket.upper <= margin), "{found:?}");
+    }
+}
