@@ -92,7 +92,7 @@ pub struct PairAnswer {
     pub bracket: Bracket,
     /// Best estimate inside the bracket, metres.
     pub signed_distance: f64,
-    /// Where wanted.
+    /// Where wanted; in an overlap only when its depth was wanted too.
     pub witness: Option<Witness>,
     /// How the work on the pair stopped.
     pub termination: Termination,
@@ -103,7 +103,7 @@ pub struct PairAnswer {
 pub struct ItemAnswer {
     /// The first that applies to any pair in the order collision, indeterminate, margin, free.
     pub verdict: Verdict,
-    /// Wanted distance: the pair of least signed distance; none when there was no pair to look at or none within the
+    /// Wanted distance: the pair of least signed distance, with the bracket of the minimum over all pairs; none when there was no pair to look at or none within the
     /// cut-off. Wanted verdict alone: the pair that decided, if one did.
     pub nearest: Option<PairAnswer>,
     /// Of states, wanted distance: the nearest pair of two links.

@@ -125,9 +125,11 @@ impl<'a> Prepared<'a> {
             cost: Cost::default(),
         };
         for part in parts {
+            // What comes after a gap is not told when the first hit is asked for: an earlier one may be in the gap.
+            let after_gap = self.mode == Mode::StopAtFirst && answer.out_of_time;
             answer.out_of_time |= part.out_of_time && answer.stopped_at.is_none();
             for item in part.items {
-                if answer.stopped_at.is_some() {
+                if answer.stopped_at.is_some() || after_gap {
                     answer.items.push(ItemAnswer::without_work(Verdict::NotRun));
                     continue;
                 }

@@ -1,6 +1,6 @@
 //! Bodies and bare shapes against the scene: `Collide` and `Distance`.
 
-use super::answer::{ItemAnswer, PairAnswer, Refused, Side, Verdict};
+use super::answer::{ItemAnswer, Refused, Side, Verdict};
 use super::context::Sieve;
 use super::request::{PairQuery, Subject, Wants};
 use super::search::{Found, Party, Plan, Search};
@@ -54,12 +54,21 @@ impl<'a> Pairs<'a> {
                 self.shape(shape, pose, &mut search);
             }
         }
-        finish(search.finish(), self.request.context.max_pairs)
+        finish(search.finish())
     }
 
+    /// Layers and mask of a bare shape.
+    fn query_layers(&self) -> (u32, u32) {
+        let filter = &self.request.context.filter;
+        (filter.layers.unwrap_or(u32::MAX), filter.mask.unwrap_or(u32::MAX))
+    }
+
+    /// A body without bounds that a bare shape is held against.
     fn first_unbounded(&self) -> Option<BodyId> {
-        let passes = |id: &&BodyId| self.snapshot.body(**id).is_some_and(|body| self.sieve.passes(body));
-        self.snapshot.unbounded().iter().find(passes).copied()
+        let (layers, mask) = self.query_layers();
+        let meets = |body: &Body| self.sieve.passes(body) && body.meets(layers, mask);
+        let met = |id: &&BodyId| self.snapshot.body(**id).is_some_and(|body| meets(body));
+        self.snapshot.unbounded().iter().find(met).copied()
     }
 
     /// Every body against those with higher ids, so that each pair comes once.
@@ -86,8 +95,7 @@ impl<'a> Pairs<'a> {
     fn shape(&self, shape: &Shape, pose: &Pose, search: &mut Search) {
         let at = pose.placement();
         let query = Party { side: Side::Query { subshape: 0 }, shape, at: &at };
-        let filter = &self.request.context.filter;
-        let (layers, mask) = (filter.layers.unwrap_or(u32::MAX), filter.mask.unwrap_or(u32::MAX));
+        let (layers, mask) = self.query_layers();
         let margin = self.request.context.margin;
         self.against_bodies(search, &query, shape.placed_bounds(&at), &mut |other| {
             other.meets(layers, mask).then_some(margin)
@@ -147,17 +155,15 @@ fn party(body: &Body) -> Party<'_> {
     Party { side: Side::Body { id: body.id, subshape: 0 }, shape: &body.shape, at: &body.placement }
 }
 
-/// The answer to an item: its pairs in order, and no more of them than asked for.
-pub(super) fn finish(found: Found, max_pairs: usize) -> ItemAnswer {
-    let (pairs, truncated) = sorted(found.pairs, max_pairs);
-    ItemAnswer { nearest: found.nearest, pairs, truncated, cost: found.cost, ..ItemAnswer::without_work(found.verdict) }
-}
-
-fn sorted(mut pairs: Vec<PairAnswer>, most: usize) -> (Vec<PairAnswer>, bool) {
-    pairs.sort_by(|p, q| (&p.a, &p.b).cmp(&(&q.a, &q.b)));
-    let truncated = pairs.len() > most;
-    pairs.truncate(most);
-    (pairs, truncated)
+/// What was found, as the answer to an item.
+pub(super) fn finish(found: Found) -> ItemAnswer {
+    ItemAnswer {
+        nearest: found.nearest,
+        pairs: found.pairs,
+        truncated: found.truncated,
+        cost: found.cost,
+        ..ItemAnswer::without_work(found.verdict)
+    }
 }
 
 impl ItemAnswer {

@@ -1,7 +1,6 @@
 //! The search that every query is: look at pairs as long as one more can change the answer.
 //!
-//! The caller walks the broad phase and offers pairs together with a lower bound of their distance; the search says how
-//! far the walk still has to reach. What is never offered, or never measured, is proved to be farther than what was
+//! The caller walks the broad phase and offers pairs; the search says how far the walk still has to reach. What is never offered, or never measured, is proved to be farther than what was
 //! found, so the bracket of the minimum is the minimum of the brackets, whatever the order of the walk.
 
 use super::answer::{PairAnswer, Side, Verdict, Witness};
@@ -53,17 +52,23 @@ pub(super) struct Search<'a> {
     /// Bracket of the minimum over all pairs measured.
     bracket: Bracket,
     verdict: Verdict,
-    /// Gravest verdict, then least sides: what decided when only a verdict was wanted.
+    /// Gravest verdict, then least sides: what decided when only a verdict was wanted. A collision ends such a search, so
+    /// it is the first one met: boxes in the order of their distance, then of their bodies' ids.
     decider: Option<PairAnswer>,
     pairs: Vec<PairAnswer>,
+    truncated: bool,
     pub cost: Cost,
 }
 
 /// What a search ends with.
 pub(super) struct Found {
     pub verdict: Verdict,
+    /// Of the minimum over all pairs measured.
+    bracket: Bracket,
+    /// The pair of the minimum, or the one that decided.
     pub nearest: Option<PairAnswer>,
     pub pairs: Vec<PairAnswer>,
+    pub truncated: bool,
     pub cost: Cost,
 }
 
@@ -76,6 +81,7 @@ impl<'a> Search<'a> {
             verdict: Verdict::Free,
             decider: None,
             pairs: Vec::new(),
+            truncated: false,
             cost: Cost::default(),
         }
     }
@@ -87,9 +93,7 @@ impl<'a> Search<'a> {
             return -1.0;
         }
         let for_distance = self.plan.cut_off().min(self.bracket.upper).max(0.0);
-        // A collision outranks every margin; only a list of pairs still needs them.
-        let margins_matter = self.plan.wants.pairs || self.verdict != Verdict::Collision;
-        if margins_matter { for_distance.max(self.plan.largest_margin) } else { for_distance }
+        if self.margins_matter() { for_distance.max(self.plan.largest_margin) } else { for_distance }
     }
 
     /// Whether more pairs cannot change the answer, or the time for them has run out: an item that was cut short is not
@@ -99,102 +103,134 @@ impl<'a> Search<'a> {
         (only_verdict && self.verdict == Verdict::Collision) || (self.plan.stop)()
     }
 
-    /// Measures a pair as far as it matters. `margin` is the pair's own. A pair of two unbounded shapes is left out.
+    /// Measures a pair as far as it matters. `margin` is the pair's own.
     pub fn offer(&mut self, a: &Party, b: &Party, margin: f64) {
+        if self.is_settled() {
+            return;
+        }
         let matters_up_to = self.plan.cut_off().min(self.bracket.upper);
         let goal = Goal {
             depth: self.plan.depth(),
             accuracy: self.plan.context.accuracy,
             margin,
             // Beyond its own margin a pair needs no more than the proof that it is beyond.
-            cut_off: matters_up_to.max(if self.margin_matters() { margin } else { f64::NEG_INFINITY }),
+            cut_off: if self.margins_matter() { matters_up_to.max(margin) } else { matters_up_to },
             stop: self.plan.stop,
         };
+        // A pair of two unbounded shapes has no distance, and is left out.
         if let Ok(found) = separation(a.shape, b.shape, a.at, b.at, &goal) {
             self.take(&found, a, b, margin);
         }
     }
 
-    fn margin_matters(&self) -> bool {
+    /// A collision outranks every margin; only a list of pairs still needs them.
+    fn margins_matter(&self) -> bool {
         self.plan.wants.pairs || self.verdict != Verdict::Collision
     }
 
     fn take(&mut self, found: &Separation, a: &Party, b: &Party, margin: f64) {
         self.cost += found.cost;
         let verdict = Verdict::of(&found.bracket, margin, found.termination);
-        let answer = || PairAnswer {
+        // Points of an overlap that was only proved are not where it is deepest.
+        let measured = self.plan.wants.depth || found.bracket.upper > 0.0;
+        let answer = PairAnswer {
             a: a.side.with_subshape(found.subshape_a),
             b: b.side.with_subshape(found.subshape_b),
             verdict,
             bracket: found.bracket,
             signed_distance: found.signed_distance,
-            witness: self.plan.wants.witness.then_some(Witness {
+            witness: (self.plan.wants.witness && measured).then_some(Witness {
                 point_on_a: found.point_on_a,
                 point_on_b: found.point_on_b,
                 normal: found.normal,
             }),
             termination: found.termination,
         };
-        self.bracket.lower = self.bracket.lower.min(found.bracket.lower);
-        self.bracket.upper = self.bracket.upper.min(found.bracket.upper);
-        if self.plan.wants.distance {
-            let is_nearer = |best: &PairAnswer| {
-                let order = found.signed_distance.total_cmp(&best.signed_distance);
-                order.then_with(|| (&a.side, &b.side).cmp(&(&best.a, &best.b))).is_lt()
-            };
-            if self.nearest.as_ref().is_none_or(is_nearer) {
-                self.nearest = Some(answer());
-            }
-        } else if verdict != Verdict::Free {
-            let graver = |best: &PairAnswer| verdict != best.verdict && best.verdict.and(verdict) == verdict;
-            if self.decider.as_ref().is_none_or(graver) {
-                self.decider = Some(answer());
-            }
-        }
-        if self.plan.wants.pairs && verdict != Verdict::Free {
-            let answer = answer();
-            self.pairs.push(answer);
-        }
+        self.bracket = union(self.bracket, found.bracket);
         self.verdict = self.verdict.and(verdict);
+        if self.plan.wants.pairs && verdict != Verdict::Free {
+            self.list(answer.clone());
+        }
+        let place = if self.plan.wants.distance { &mut self.nearest } else { &mut self.decider };
+        let comes_first = if self.plan.wants.distance { is_nearer } else { is_graver };
+        if place.as_ref().is_none_or(|best| comes_first(&answer, best)) {
+            *place = Some(answer);
+        }
+    }
+
+    /// Keeps a pair for the list; those that the limit will cut off are dropped now and then, so that the list stays short.
+    fn list(&mut self, pair: PairAnswer) {
+        self.pairs.push(pair);
+        if self.pairs.len() > 2 * self.plan.context.max_pairs + 64 {
+            self.shorten();
+        }
+    }
+
+    /// The list in the order of its sides, cut to the limit.
+    fn shorten(&mut self) {
+        self.truncated |= shorten(&mut self.pairs, self.plan.context.max_pairs);
     }
 
     /// The verdict, and what was wanted beside it.
-    pub fn finish(self) -> Found {
-        let within = |p: &PairAnswer| p.signed_distance <= self.plan.cut_off();
-        let nearest = match self.nearest.filter(within) {
-            // The minimum is bracketed by all pairs together; the pair by which it is told has its own proof in it.
-            Some(pair) => Some(PairAnswer {
-                signed_distance: pair.signed_distance.clamp(self.bracket.lower, self.bracket.upper),
-                bracket: self.bracket,
-                ..pair
-            }),
-            None => self.decider,
+    pub fn finish(mut self) -> Found {
+        self.shorten();
+        let bracket = self.bracket;
+        let nearest = if self.plan.wants.distance {
+            // Only what is proved to be beyond the cut-off is left away.
+            let within = bracket.lower <= self.plan.cut_off();
+            // The minimum is bracketed by all pairs together; the pair it is told by has its own proof in it.
+            self.nearest.filter(|_| within).map(|pair| PairAnswer { bracket, ..pair })
+        } else {
+            self.decider.filter(|pair| pair.verdict != Verdict::Free)
         };
-        Found { verdict: self.verdict, nearest, pairs: self.pairs, cost: self.cost }
+        let (verdict, pairs, truncated, cost) = (self.verdict, self.pairs, self.truncated, self.cost);
+        Found { verdict, bracket, nearest, pairs, truncated, cost }
     }
 }
 
 impl Found {
-    /// The answer over the pairs of both searches.
-    pub fn and(self, other: Self) -> Self {
-        let verdict = self.verdict.and(other.verdict);
+    /// The answer over the pairs of both searches, which asked the same.
+    pub fn and(self, other: Self, plan: &Plan) -> Self {
+        let bracket = union(self.bracket, other.bracket);
+        let comes_first = if plan.wants.distance { is_nearer } else { is_graver };
         let nearest = match (self.nearest, other.nearest) {
-            (Some(one), Some(two)) => Some(nearer(one, two)),
+            (Some(one), Some(two)) => Some(if comes_first(&two, &one) { two } else { one }),
             (one, two) => one.or(two),
         };
+        let nearest = nearest.map(|pair| if plan.wants.distance { PairAnswer { bracket, ..pair } } else { pair });
         let mut pairs = self.pairs;
         pairs.extend(other.pairs);
+        let truncated = shorten(&mut pairs, plan.context.max_pairs) | self.truncated | other.truncated;
         let mut cost = self.cost;
         cost += other.cost;
-        Self { verdict, nearest, pairs, cost }
+        Self { verdict: self.verdict.and(other.verdict), bracket, nearest, pairs, truncated, cost }
     }
 }
 
-/// The nearer of two minima over different pairs, with the bracket of both together.
-fn nearer(one: PairAnswer, two: PairAnswer) -> PairAnswer {
-    let bracket =
-        Bracket { lower: one.bracket.lower.min(two.bracket.lower), upper: one.bracket.upper.min(two.bracket.upper) };
+/// Bracket of the lesser of two distances.
+fn union(one: Bracket, two: Bracket) -> Bracket {
+    Bracket { lower: one.lower.min(two.lower), upper: one.upper.min(two.upper) }
+}
+
+/// Less signed distance, then lesser sides.
+fn is_nearer(one: &PairAnswer, two: &PairAnswer) -> bool {
     let order = one.signed_distance.total_cmp(&two.signed_distance);
-    let first = if order.then_with(|| (&one.a, &one.b).cmp(&(&two.a, &two.b))).is_le() { one } else { two };
-    PairAnswer { signed_distance: first.signed_distance.clamp(bracket.lower, bracket.upper), bracket, ..first }
+    order.then_with(|| sides(one).cmp(&sides(two))).is_lt()
+}
+
+/// Graver verdict, then lesser sides.
+fn is_graver(one: &PairAnswer, two: &PairAnswer) -> bool {
+    if one.verdict == two.verdict { sides(one) < sides(two) } else { one.verdict.and(two.verdict) == one.verdict }
+}
+
+fn sides(pair: &PairAnswer) -> (&Side, &Side) {
+    (&pair.a, &pair.b)
+}
+
+/// Sorts pairs by their sides and cuts them to `most`; says whether that cut any off.
+fn shorten(pairs: &mut Vec<PairAnswer>, most: usize) -> bool {
+    pairs.sort_by(|one, two| sides(one).cmp(&sides(two)));
+    let cut = pairs.len() > most;
+    pairs.truncate(most);
+    cut
 }

@@ -102,8 +102,9 @@ impl<'a> States<'a> {
         self.snapshot.margin(self.robot.link(link), body.member()).unwrap_or(self.request.context.margin)
     }
 
+    /// A robot that cannot move has one state, of no numbers.
     pub fn len(&self) -> usize {
-        self.request.positions.len().checked_div(self.model.degrees_of_freedom()).unwrap_or(0)
+        self.request.positions.len().checked_div(self.model.degrees_of_freedom()).unwrap_or(1)
     }
 
     pub fn scratch(&self) -> Scratch {
@@ -133,7 +134,7 @@ impl<'a> States<'a> {
         let (own, outer) = (own.finish(), outer.finish());
         let minima = self.wants.distance.then(|| (own.nearest.clone(), outer.nearest.clone()));
         let (nearest_self, nearest_scene) = minima.unwrap_or_default();
-        let whole = finish(own.and(outer), self.request.context.max_pairs);
+        let whole = finish(own.and(outer, &plan));
         ItemAnswer { nearest_self, nearest_scene, ..whole }
     }
 

@@ -131,7 +131,9 @@ impl Kinematics {
             match step.motion {
                 Motion::Fixed => {}
                 Motion::Turn { coordinate, .. } if coordinate.value(positions).is_finite() => {}
-                Motion::Slide { coordinate, .. } if coordinate.value(positions).abs() <= LARGEST_LENGTH => {}
+                Motion::Slide { direction, coordinate }
+                    if (step.origin.translation() + coordinate.value(positions) * direction).amax()
+                        <= LARGEST_LENGTH => {}
                 Motion::Turn { coordinate, .. } | Motion::Slide { coordinate, .. } => {
                     return too_large(coordinate.index);
                 }

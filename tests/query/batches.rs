@@ -1,8 +1,12 @@
 //! Many states in one request: parts, order, the first hit, the clock, and bad items.
 
 use std::cell::Cell;
+use std::sync::Arc;
 
+use clearance::geometry::{Pose, Shape};
 use clearance::query::{CheckStates, Context, Mode, Prepared, Refused, Verdict, Wants};
+use clearance::robot::{LinkOptions, MeshRequest, ModelOptions, RobotModel};
+use clearance::scene::{Edit, Epoch, NewBody, Scene};
 
 use crate::workload::{scenes, states, ur5};
 
@@ -80,4 +84,37 @@ fn bad_numbers_are_refused_by_item_and_field() {
         let request = CheckStates { context, ..request(Mode::All, Wants::VERDICT) };
         assert!(matches!(refused(&request), Refused::Invalid { field, .. } if field.starts_with("context.")));
     }
+}
+
+#[test]
+fn the_first_hit_is_not_told_across_a_gap_that_time_left() {
+    let snapshot = &scenes(&ur5())[3];
+    let request = request(Mode::StopAtFirst, Wants::VERDICT);
+    let prepared = Prepared::check_states(snapshot, &request).unwrap();
+    let whole = prepared.answer(&|| false);
+    let hit = whole.stopped_at.unwrap();
+    assert!(hit >= 2);
+    // The first part runs out of time at once, the second finds the hit.
+    let parts = [prepared.run(0..2, &|| true), prepared.run(2..prepared.len(), &|| false)];
+    let answer = prepared.join(parts);
+    assert!(answer.out_of_time && answer.stopped_at.is_none());
+    assert!(answer.items.iter().all(|item| item.verdict == Verdict::NotRun));
+}
+
+#[test]
+fn a_robot_that_cannot_move_has_one_state() {
+    let post = r#"<robot name="post"><link name="post"><collision><geometry><sphere radius="0.2"/></geometry></collision></link></robot>"#;
+    let mut no_meshes = |_: &MeshRequest| Err("none".to_owned());
+    let model =
+        RobotModel::from_urdf(post, None, &mut no_meshes, &ModelOptions::uniform(LinkOptions::default())).unwrap();
+    let mut scene = Scene::new(Epoch(1));
+    let base = Pose::identity();
+    let ball = NewBody::new("ball", Arc::new(Shape::sphere(0.2).unwrap()), base);
+    let robot = Edit::AddRobot { name: "post".to_owned(), model: Arc::new(model), base };
+    scene.apply(&[robot, Edit::AddBody(ball)], None).unwrap();
+    let request =
+        CheckStates { robot: "post".to_owned(), positions: Vec::new(), mode: Mode::All, context: Context::default() };
+    let snapshot = scene.snapshot();
+    let answer = Prepared::check_states(&snapshot, &request).unwrap().answer(&|| false);
+    assert_eq!(answer.items.iter().map(|item| item.verdict).collect::<Vec<_>>(), [Verdict::Collision]);
 }

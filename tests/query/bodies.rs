@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
-use clearance::narrow_phase::{Goal, separation};
+use clearance::narrow_phase::{Accuracy, Goal, separation};
 use clearance::query::{Answer, Context, Filter, ItemAnswer, Mode, PairQuery, Prepared, Side, Subject, Verdict, Wants};
 use clearance::scene::{BodyId, Edit, Epoch, NewBody, Party, Scene, Snapshot};
 
@@ -201,5 +201,46 @@ fn an_empty_scene_answers_free_without_a_distance() {
     for subject in [Subject::All, Subject::Shape { shape: Shape::point(), pose: Pose::identity() }] {
         let answer = ask(&scene.snapshot(), subject, with(Wants::ALL), true);
         assert_eq!((answer.verdict, answer.nearest), (Verdict::Free, None));
+    }
+}
+
+#[test]
+fn points_of_an_overlap_come_with_its_depth_only() {
+    let scene = clutter();
+    let snapshot = &scene.snapshot();
+    let witness = Wants { witness: true, ..Wants::VERDICT };
+    let proved = ask(snapshot, Subject::All, with(witness), true).nearest.unwrap();
+    assert!(proved.bracket.upper <= 0.0 && proved.witness.is_none());
+    let measured = ask(snapshot, Subject::All, with(Wants { depth: true, ..witness }), true).nearest.unwrap();
+    let points = measured.witness.unwrap();
+    let gap = points.point_on_b - points.point_on_a - points.normal * measured.signed_distance;
+    assert!(gap.norm() < 1e-9, "{measured:?}");
+}
+
+#[test]
+fn a_loose_distance_keeps_the_verdict_and_its_bracket_holds_the_truth() {
+    let scene = clutter();
+    let snapshot = &scene.snapshot();
+    let pairs = all_pairs(snapshot);
+    for body in snapshot.bodies() {
+        let own = pairs.iter().filter(|(a, b, _)| *a == body.id || *b == body.id);
+        let least = own.map(|(_, _, d)| *d).fold(f64::INFINITY, f64::min);
+        for cut_off in [None, Some(0.02)] {
+            let accuracy = Accuracy { absolute: 1.0, relative: 0.0 };
+            let context = Context { accuracy, cut_off, margin: 0.03, ..with(Wants { depth: true, ..Wants::VERDICT }) };
+            let answer = ask(snapshot, Subject::Body(body.id), context, true);
+            let expected = match least {
+                d if d <= 0.0 => Verdict::Collision,
+                d if d <= 0.03 => Verdict::Margin,
+                _ => Verdict::Free,
+            };
+            assert_eq!(answer.verdict, expected, "{}: {answer:?}, {least}", body.name);
+            match answer.nearest {
+                Some(p) => {
+                    assert!(p.bracket.lower <= least + 1e-12 && least - 1e-12 <= p.bracket.upper, "{p:?}, {least}")
+                }
+                None => assert!(least > 0.02, "{least}"),
+            }
+        }
     }
 }
