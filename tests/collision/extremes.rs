@@ -10,7 +10,7 @@ use crate::samples::{Random, at};
 fn hulls_with_sharp_edges_keep_the_points_on_them() {
     let mut random = Random::new(31);
     for _ in 0..300 {
-        let thickness = 10f64.powf(random.between(-4.0, -1.0));
+        let thickness = libm::pow(10.0, random.between(-4.0, -1.0));
         let (a, b) = (Vec3::zeros(), Vec3::new(1.0, random.between(-0.3, 0.3), 0.0));
         let back = Vec3::new(random.between(0.2, 0.8), -1.0, 0.0);
         let on_edge = a + (b - a) * random.between(0.2, 0.8) + Vec3::y() * random.between(0.0, 1e-12);
