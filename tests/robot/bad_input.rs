@@ -259,3 +259,13 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_slide_whose_origin_and_travel_add_up_beyond_reach_is_refused() {
+    let origin = r#"<parent link="c"/><origin xyz="6e151 0 0"/><child link="d"/>"#;
+    let far = ARM.replace(r#"<parent link="c"/><child link="d"/>"#, origin);
+    let model = model(&far, None).unwrap();
+    assert!(model.check_positions(&[0.0, 3e151]).is_ok());
+    let refused = model.check_positions(&[0.0, 6e151]).unwrap_err().to_string();
+    assert_eq!(refused, r#"position 1 (joint "slide") is beyond reach: 6e151"#);
+}
