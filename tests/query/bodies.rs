@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
+use clearance::geometry::{Compound, Part, Pose, Quaternion, Shape, Vec3};
 use clearance::narrow_phase::{Accuracy, Goal, separation};
 use clearance::query::{Answer, Context, Filter, ItemAnswer, Mode, PairQuery, Prepared, Side, Subject, Verdict, Wants};
 use clearance::scene::{BodyId, Edit, Epoch, NewBody, Party, Scene, Snapshot};
@@ -242,5 +242,23 @@ fn a_loose_distance_keeps_the_verdict_and_its_bracket_holds_the_truth() {
                 None => assert!(least > 0.02, "{least}"),
             }
         }
+    }
+}
+
+#[test]
+fn of_equally_near_pairs_the_one_with_the_lesser_sides_is_told() {
+    let here = |x: f64| Pose::new(Vec3::new(x, 0.0, 0.0), Quaternion::IDENTITY).unwrap();
+    let ball = Shape::sphere(0.25).unwrap();
+    let part = |x| Part { shape: ball.clone(), pose: here(x) };
+    let dumbbell = Shape::compound(Arc::new(Compound::new(vec![part(-1.0), part(1.0)]).unwrap()));
+    for places in [[3.0, -3.0], [-3.0, 3.0]] {
+        let mut scene = Scene::new(Epoch(1));
+        let body =
+            |(i, x): (usize, &f64)| Edit::AddBody(NewBody::new(format!("body {i}"), Arc::new(ball.clone()), here(*x)));
+        scene.apply(&places.iter().enumerate().map(body).collect::<Vec<_>>(), None).unwrap();
+        let subject = Subject::Shape { shape: dumbbell.clone(), pose: here(0.0) };
+        let found = ask(&scene.snapshot(), subject, with(Wants::VERDICT), true).nearest.unwrap();
+        assert_eq!(found.signed_distance, 1.5);
+        assert_eq!(found.a, Side::Query { subshape: 0 }, "part 0 comes before part 1, whichever body was met first");
     }
 }
