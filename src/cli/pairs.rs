@@ -12,8 +12,8 @@ use super::case::{self, Case};
 use super::exit_code::Failed;
 use super::words;
 use crate::geometry::Vec3;
-use crate::narrow_phase::{self, Accuracy, Bracket, Goal, Separation, Termination};
-use crate::query::{Indeterminacy, Verdict};
+use crate::narrow_phase::{self, Accuracy, Goal, Separation};
+use crate::query::Verdict;
 
 /// Flags of `clearance pairs`.
 #[derive(clap::Args, Clone, Debug)]
@@ -132,7 +132,7 @@ fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, String> {
 fn written(separation: &Separation, micros: f64) -> Measured {
     let Separation { bracket, signed_distance, normal, point_on_a, point_on_b, termination, cost, .. } = *separation;
     Measured {
-        verdict: words::verdict(verdict(bracket, termination)),
+        verdict: words::verdict(Verdict::of(&bracket, 0.0, termination)),
         signed_distance,
         lower: bracket.lower,
         upper: bracket.upper,
@@ -141,19 +141,6 @@ fn written(separation: &Separation, micros: f64) -> Measured {
         termination: words::termination(termination),
         iterations: cost.gjk_iterations + cost.epa_iterations,
         micros,
-    }
-}
-
-/// Without a margin there are three verdicts.
-fn verdict(bracket: Bracket, termination: Termination) -> Verdict {
-    if bracket.upper <= 0.0 {
-        Verdict::Collision
-    } else if bracket.lower > 0.0 {
-        Verdict::Free
-    } else if termination == Termination::RoundingFloor {
-        Verdict::Indeterminate(Indeterminacy::Rounding)
-    } else {
-        Verdict::Indeterminate(Indeterminacy::IterationLimit)
     }
 }
 

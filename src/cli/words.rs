@@ -25,5 +25,6 @@ pub fn termination(termination: Termination) -> &'static str {
         Termination::Decided => "DECIDED",
         Termination::RoundingFloor => "ROUNDING_FLOOR",
         Termination::IterationLimit => "ITERATION_LIMIT",
+        Termination::TimeLimit => "TIME_LIMIT",
     }
 }

@@ -57,12 +57,6 @@ impl Quaternion {
         }
     }
 
-    /// The opposite rotation.
-    #[must_use]
-    pub fn inverse(self) -> Self {
-        Self { w: self.w, x: -self.x, y: -self.y, z: -self.z }
-    }
-
     /// Largest component by size; zero only for the zero quaternion.
     fn largest(self) -> f64 {
         self.w.abs().max(self.x.abs()).max(self.y.abs()).max(self.z.abs())

@@ -51,6 +51,7 @@ fn solve(difference: &Difference, target: &Target, cost: &mut Cost) -> Epa {
         End::Stalled if at_floor => stopped(Termination::RoundingFloor),
         End::Stalled => epa(difference, found.feature.vertices(), stopped(Termination::IterationLimit), target, cost),
         End::Limit => stopped(Termination::IterationLimit),
+        End::OutOfTime => stopped(Termination::TimeLimit),
         End::Enclosed(vertices) => {
             let overlap = Epa { upper: inner_ball(vertices, difference.error), ..stopped(Termination::Decided) };
             let measured = target.goal.depth == Depth::Penetration;
@@ -86,7 +87,9 @@ fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost:
     // shapes a support value is exact where a polytope is still coarse.
     let of_cores = match found.termination {
         Termination::Converged | Termination::RoundingFloor => found.direction.dot(&found.nearest.w),
-        Termination::Decided | Termination::IterationLimit | Termination::ClosedForm => found.lower + difference.error,
+        Termination::Decided | Termination::IterationLimit | Termination::TimeLimit | Termination::ClosedForm => {
+            found.lower + difference.error
+        }
     };
     let signed_distance = (of_cores / target.scale - target.radii).clamp(bracket.lower, bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.

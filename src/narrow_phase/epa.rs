@@ -103,6 +103,7 @@ fn expand(difference: &Difference, mut polytope: Polytope, mut best: Epa, target
             break;
         }
         if target.must_stop() {
+            best.termination = Termination::TimeLimit;
             break;
         }
         let gain = outward.dot(&vertex.w) - offset;

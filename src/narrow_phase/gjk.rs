@@ -11,7 +11,7 @@
 //! - the bracket is as narrow as asked, or decides what was asked;
 //! - a tetrahedron encloses the origin, by an exact test (the cores overlap: EPA's work);
 //! - no further progress can be made in `f64`;
-//! - the cap on rounds is reached.
+//! - the cap on rounds is reached, or the caller's time.
 
 use super::bracketing::Target;
 use super::minkowski::{Difference, Vertex};
@@ -48,8 +48,10 @@ pub(super) enum End {
     Enclosed([Vertex; 4]),
     /// No progress in `f64`; the bracket may still be wide next to a small distance.
     Stalled,
-    /// The cap, or the caller's stop.
+    /// The cap on rounds.
     Limit,
+    /// The caller's time ran out.
+    OutOfTime,
 }
 
 /// Runs GJK on `difference`, starting between the centres.
@@ -70,7 +72,7 @@ pub(super) fn gjk(difference: &Difference, target: &Target, cost: &mut Cost) -> 
             return Gjk { end, ..best };
         }
         if target.must_stop() {
-            break;
+            return Gjk { end: End::OutOfTime, ..best };
         }
         let x = best.feature.nearest().w;
         let Some(toward) = unit(best.feature.direction(x)) else {

@@ -34,6 +34,8 @@ pub enum Termination {
     RoundingFloor,
     /// The cap on iterations was reached; the bracket is valid, and wider than was asked.
     IterationLimit,
+    /// The caller's time ran out; the bracket is valid, and wider than was asked.
+    TimeLimit,
 }
 
 /// What the work cost. Counters only, so that equal work has equal bytes.

@@ -19,7 +19,7 @@ pub(super) fn with_containment(surfaces: Separation, a: &Piece, b: &Piece, goal:
     if (goal.stop)() {
         // No time to find out.
         let bracket = Bracket { lower, upper: surfaces.bracket.upper };
-        return Separation { bracket, termination: Termination::IterationLimit, ..surfaces };
+        return Separation { bracket, termination: Termination::TimeLimit, ..surfaces };
     }
     if !(contains(a, b) || contains(b, a)) {
         return surfaces;

@@ -41,12 +41,13 @@ pub(super) struct Least<'a> {
     lower: f64,
     upper: f64,
     pub cost: Cost,
-    limited: bool,
+    /// The gravest limit that any pair met: time after the cap on iterations.
+    limit: Option<Termination>,
 }
 
 impl<'a> Least<'a> {
     pub fn new(asked: &'a Goal<'a>) -> Self {
-        Self { asked, best: None, lower: f64::INFINITY, upper: f64::INFINITY, cost: Cost::default(), limited: false }
+        Self { asked, best: None, lower: f64::INFINITY, upper: f64::INFINITY, cost: Cost::default(), limit: None }
     }
 
     /// What the next pair is asked: nothing more, once it is proved farther than the best.
@@ -71,7 +72,7 @@ impl<'a> Least<'a> {
         }
         let stopped = (self.asked.stop)();
         if stopped {
-            self.limited = true;
+            self.limit = Some(Termination::TimeLimit);
             self.lower = self.lower.min(lower);
         }
         stopped
@@ -79,7 +80,9 @@ impl<'a> Least<'a> {
 
     pub fn take(&mut self, found: Separation) {
         self.cost += found.cost;
-        self.limited |= found.termination == Termination::IterationLimit;
+        if matches!(found.termination, Termination::IterationLimit | Termination::TimeLimit) {
+            self.limit = self.limit.max(Some(found.termination));
+        }
         self.lower = self.lower.min(found.bracket.lower);
         self.upper = self.upper.min(found.bracket.upper);
         if self.best.as_ref().is_none_or(|best| found.signed_distance < best.signed_distance) {
@@ -90,7 +93,7 @@ impl<'a> Least<'a> {
     pub fn finish(self) -> Option<Separation> {
         let best = self.best?;
         let bracket = Bracket { lower: self.lower, upper: self.upper };
-        let termination = if self.limited { Termination::IterationLimit } else { best.termination };
+        let termination = self.limit.unwrap_or(best.termination);
         Some(Separation { bracket, termination, cost: self.cost, ..best })
     }
 }

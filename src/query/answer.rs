@@ -28,6 +28,8 @@ pub enum Indeterminacy {
     Rounding,
     /// The cap on iterations was reached first.
     IterationLimit,
+    /// The time ran out first.
+    TimeLimit,
 }
 
 /// One side of a pair.

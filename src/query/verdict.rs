@@ -18,6 +18,7 @@ impl Verdict {
         }
         Self::Indeterminate(match termination {
             Termination::IterationLimit => Indeterminacy::IterationLimit,
+            Termination::TimeLimit => Indeterminacy::TimeLimit,
             Termination::ClosedForm | Termination::Converged | Termination::Decided | Termination::RoundingFloor => {
                 Indeterminacy::Rounding
             }
@@ -44,11 +45,12 @@ impl Verdict {
         match self {
             Self::InvalidInput => 0,
             Self::Collision => 1,
-            Self::Indeterminate(Indeterminacy::IterationLimit) => 2,
-            Self::Indeterminate(Indeterminacy::Rounding) => 3,
-            Self::NotRun => 4,
-            Self::Margin => 5,
-            Self::Free => 6,
+            Self::Indeterminate(Indeterminacy::TimeLimit) => 2,
+            Self::Indeterminate(Indeterminacy::IterationLimit) => 3,
+            Self::Indeterminate(Indeterminacy::Rounding) => 4,
+            Self::NotRun => 5,
+            Self::Margin => 6,
+            Self::Free => 7,
         }
     }
 }

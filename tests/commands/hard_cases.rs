@@ -144,6 +144,9 @@ fn no_time_at_all_still_gives_a_valid_bracket() {
     let file = data("hard.jsonl");
     let cases = json_lines(&fs::read(&file).unwrap());
     let answers = json_lines(&clearance(&["pairs", file.to_str().unwrap(), "--max-time-us", "0"]).stdout);
+    let cut = answers.iter().filter(|answer| answer["termination"] == "TIME_LIMIT").count();
+    assert!(cut > 500, "only {cut} answers say that the time cut them");
+    assert!(answers.iter().all(|answer| answer["termination"] != "ITERATION_LIMIT"));
     for (case, answer) in cases.iter().zip(&answers) {
         let (truth, noise) = (number(&case["truth"]["signed_distance"]), number(&case["truth"]["noise"]));
         // An upper or lower end that is not there yet is infinite, which JSON writes as null.

@@ -77,6 +77,7 @@ fn indeterminacy(number: i32) -> Result<Indeterminacy, NotAnAnswer> {
     match v1::Indeterminacy::try_from(number) {
         Ok(v1::Indeterminacy::Rounding) => Ok(Indeterminacy::Rounding),
         Ok(v1::Indeterminacy::IterationLimit) => Ok(Indeterminacy::IterationLimit),
+        Ok(v1::Indeterminacy::TimeLimit) => Ok(Indeterminacy::TimeLimit),
         Ok(v1::Indeterminacy::Unspecified) | Err(_) => Err(NotAnAnswer("indeterminacy")),
     }
 }
@@ -88,6 +89,7 @@ fn termination(number: i32) -> Result<Termination, NotAnAnswer> {
         Ok(v1::Termination::Decided) => Ok(Termination::Decided),
         Ok(v1::Termination::RoundingFloor) => Ok(Termination::RoundingFloor),
         Ok(v1::Termination::IterationLimit) => Ok(Termination::IterationLimit),
+        Ok(v1::Termination::TimeLimit) => Ok(Termination::TimeLimit),
         Ok(v1::Termination::Unspecified) | Err(_) => Err(NotAnAnswer("termination")),
     }
 }

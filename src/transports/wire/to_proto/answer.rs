@@ -119,6 +119,7 @@ fn indeterminacy(why: Indeterminacy) -> v1::Indeterminacy {
     match why {
         Indeterminacy::Rounding => v1::Indeterminacy::Rounding,
         Indeterminacy::IterationLimit => v1::Indeterminacy::IterationLimit,
+        Indeterminacy::TimeLimit => v1::Indeterminacy::TimeLimit,
     }
 }
 
@@ -129,6 +130,7 @@ fn termination(termination: Termination) -> v1::Termination {
         Termination::Decided => v1::Termination::Decided,
         Termination::RoundingFloor => v1::Termination::RoundingFloor,
         Termination::IterationLimit => v1::Termination::IterationLimit,
+        Termination::TimeLimit => v1::Termination::TimeLimit,
     }
 }
 

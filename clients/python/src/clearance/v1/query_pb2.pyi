@@ -36,6 +36,7 @@ class Indeterminacy(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     INDETERMINACY_UNSPECIFIED: _ClassVar[Indeterminacy]
     INDETERMINACY_ROUNDING: _ClassVar[Indeterminacy]
     INDETERMINACY_ITERATION_LIMIT: _ClassVar[Indeterminacy]
+    INDETERMINACY_TIME_LIMIT: _ClassVar[Indeterminacy]
 
 class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -45,6 +46,7 @@ class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     TERMINATION_DECIDED: _ClassVar[Termination]
     TERMINATION_ROUNDING_FLOOR: _ClassVar[Termination]
     TERMINATION_ITERATION_LIMIT: _ClassVar[Termination]
+    TERMINATION_TIME_LIMIT: _ClassVar[Termination]
 ANSWER_FORM_UNSPECIFIED: AnswerForm
 ANSWER_FORM_ITEMS: AnswerForm
 ANSWER_FORM_BULK: AnswerForm
@@ -61,12 +63,14 @@ VERDICT_INVALID_INPUT: Verdict
 INDETERMINACY_UNSPECIFIED: Indeterminacy
 INDETERMINACY_ROUNDING: Indeterminacy
 INDETERMINACY_ITERATION_LIMIT: Indeterminacy
+INDETERMINACY_TIME_LIMIT: Indeterminacy
 TERMINATION_UNSPECIFIED: Termination
 TERMINATION_CLOSED_FORM: Termination
 TERMINATION_CONVERGED: Termination
 TERMINATION_DECIDED: Termination
 TERMINATION_ROUNDING_FLOOR: Termination
 TERMINATION_ITERATION_LIMIT: Termination
+TERMINATION_TIME_LIMIT: Termination
 
 class RevisionRule(_message.Message):
     __slots__ = ("epoch", "latest", "exactly", "at_least")
