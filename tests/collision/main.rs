@@ -1,8 +1,15 @@
-//! The narrow phase against closed forms, against itself turned around, and against slower ways to the same answer.
+//! The narrow phase against closed forms, against itself turned around, and against slower ways to the same answer: above
+//! all against an oracle of its own arithmetic, in `soundness`.
 
 mod closed_forms;
 mod extremes;
+mod hard_cases;
+mod oracle;
+mod random_pairs;
 mod samples;
+mod soundness;
+mod specimen;
 mod sweep;
 mod symmetry;
 mod unions;
+mod verdict_of_truth;

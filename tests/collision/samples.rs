@@ -16,6 +16,21 @@ impl Random {
         low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
     }
 
+    /// A power of ten with an exponent uniform in `low..high`.
+    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        libm::pow(10.0, self.between(low, high))
+    }
+
+    /// Uniform in `0..count`.
+    pub fn index(&mut self, count: usize) -> usize {
+        self.between(0.0, count as f64) as usize
+    }
+
+    /// True once in `count` times.
+    pub fn one_in(&mut self, count: usize) -> bool {
+        self.index(count) == 0
+    }
+
     pub fn vector(&mut self, size: f64) -> Vec3 {
         Vec3::new(self.between(-size, size), self.between(-size, size), self.between(-size, size))
     }
