@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 use clearance::narrow_phase::{Accuracy, Depth, Goal};
 
+use crate::hard_cases::hard_cases;
+use crate::oracle::double_double::Dd;
 use crate::oracle::{Truth, truth};
 use crate::random_pairs::{KINDS, Pair, random_pair};
 use crate::samples::Random;
@@ -151,6 +153,24 @@ fn assert_sound(tally: &Tally) {
 #[test]
 fn no_bracket_misses_the_truth() {
     assert_sound(&sweep_on_two_threads(10, 200, 100));
+}
+
+/// Oracle: the 41 digits of each case, without the slack that scores for other libraries allow.
+#[test]
+fn every_hard_case_is_in_its_bracket() {
+    let full = Goal::penetration();
+    let exact = Goal { accuracy: Accuracy { absolute: 0.0, relative: 0.0 }, ..full };
+    let cases = hard_cases();
+    assert!(cases.len() > 1300);
+    for case in &cases {
+        let doubt = Dd::from(case.gap + 1e-28 * case.truth.abs().hi + 1e-300);
+        for goal in [full, exact, Goal::verdict()] {
+            let found = ask(&case.a, &case.b, &goal);
+            let (lower, upper) = (Dd::from(found.bracket.lower), Dd::from(found.bracket.upper));
+            let holds = lower <= case.truth + doubt && case.truth - doubt <= upper;
+            assert!(holds, "{}: {found:?}, digits {:?}", case.id, case.truth);
+        }
+    }
 }
 
 /// `SOUNDNESS_PAIRS` says how many; run by `./test long`.
