@@ -7,6 +7,8 @@ use crate::specimen::{Form, Specimen};
 
 pub struct HardCase {
     pub id: String,
+    /// The situation, and who reported it.
+    pub note: String,
     pub a: Specimen,
     pub b: Specimen,
     /// The signed distance, from 41 decimal digits.
@@ -29,6 +31,7 @@ fn case(line: &Value) -> HardCase {
     let truth = &line["truth"];
     HardCase {
         id: line["id"].as_str().expect("an id").to_owned(),
+        note: line["note"].as_str().expect("a note").to_owned(),
         a: specimen(&line["a"], &line["pose_a"]),
         b: specimen(&line["b"], &line["pose_b"]),
         truth: decimal(truth["digits"].as_str().expect("digits")),

@@ -4,6 +4,7 @@
 mod closed_forms;
 mod extremes;
 mod hard_cases;
+mod known_failures;
 mod laws;
 mod oracle;
 mod random_pairs;
