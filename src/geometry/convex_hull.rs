@@ -1,26 +1,29 @@
-//! The convex hull of a cloud of points, as the few points that support it.
+//! The convex hull of a cloud of points, and its support function.
 
-use std::collections::HashMap;
-
+use super::hull_builder::{self, Spanning};
+use super::hull_climb::{self, StartTable};
+use super::hull_scan::Scan;
+use super::hull_surface::HullSurface;
 use super::shape::position;
 use super::{Aabb, InvalidShape, Vec3, length};
 
 /// The convex hull of some points, possibly flat, a segment or a single point.
 ///
-/// Only the points are kept: a support function needs no faces. The hull builder's answer is used to leave out points that
-/// are well inside; a point that it passed over, but that is near its surface, is kept. Where the builder gives up, as
-/// builders do on slivers, all distinct points are kept. So a hull is as exact as the points it was made from.
+/// It is as exact as the points it was made from: a hull builder's answer is used only as far as it is proved
+/// ([`HullSurface`]), and where the builder gives up, as builders do on slivers, all distinct points are kept.
 #[derive(Clone, Debug)]
 pub struct ConvexHull {
     points: Vec<Vec3>,
-    /// The points again, coordinate by coordinate, filled up with copies of the first to whole blocks.
-    blocks: Vec<[[f64; LANES]; 3]>,
+    scan: Scan,
+    surface: Option<HullSurface>,
+    /// Of hulls that are large enough for climbing to pay.
+    starts: Option<StartTable>,
     bounds: Aabb,
     radius: f64,
 }
 
-/// Points that are looked at together: as many as an AVX-512 register holds, two or four of the narrower ones.
-const LANES: usize = 8;
+/// From this many points on the support function climbs along edges instead of looking at every point.
+const CLIMBED: usize = 56;
 
 impl ConvexHull {
     /// # Errors
@@ -32,8 +35,7 @@ impl ConvexHull {
         for (i, p) in points.iter().enumerate() {
             position(|| format!("points[{i}]"), *p)?;
         }
-        let distinct = distinct(points);
-        Ok(Self::spanned_by(extreme_points(&distinct).unwrap_or(distinct)))
+        Ok(Self::spanned_by(hull_builder::spanning(points)))
     }
 
     /// The points that span the hull, in the order given, without duplicates.
@@ -42,30 +44,31 @@ impl ConvexHull {
         &self.points
     }
 
-    /// The point farthest along `direction` (of any length); among equals the first. Metres, the hull's frame.
+    /// The triangles of the hull; none for hulls that are flat, or whose surface could not be proved convex.
     #[must_use]
-    pub fn support(&self, direction: Vec3) -> Vec3 {
-        // First the greatest value, lane by lane and without branches; then the first point that has it, found by
-        // evaluating the same expression again.
-        let dot = |block: &[[f64; LANES]; 3], lane: usize| {
-            block[0][lane] * direction.x + block[1][lane] * direction.y + block[2][lane] * direction.z
-        };
-        let mut greatest = [f64::NEG_INFINITY; LANES];
-        for block in &self.blocks {
-            for lane in 0..LANES {
-                let value = dot(block, lane);
-                greatest[lane] = if value > greatest[lane] { value } else { greatest[lane] };
+    pub fn surface(&self) -> Option<&HullSurface> {
+        self.surface.as_ref()
+    }
+
+    /// Index of a point where `direction . x` is greatest, for a direction of any length. `hint` is a guess, such as the
+    /// last answer for a direction nearby; it must be an index of a point.
+    ///
+    /// The product at that point, in exact arithmetic, is less than the greatest by no more than `6 u |direction|
+    /// radius`, u being the unit roundoff.
+    #[must_use]
+    pub fn farthest(&self, direction: Vec3, hint: u32) -> u32 {
+        if let (Some(surface), Some(starts)) = (&self.surface, &self.starts) {
+            let d = direction;
+            let height = |vertex: u32| self.points[vertex as usize].dot(&d);
+            let start = starts.start(d);
+            let start = if height(hint) > height(start) { hint } else { start };
+            if let Some(vertex) = hull_climb::highest(&self.points, surface, self.radius, start, d) {
+                return vertex;
             }
         }
-        let greatest = greatest.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        for (b, block) in self.blocks.iter().enumerate() {
-            for lane in 0..LANES {
-                if dot(block, lane) == greatest {
-                    return self.points.get(b * LANES + lane).copied().unwrap_or(self.points[0]);
-                }
-            }
-        }
-        self.points[0] // The direction has a component that is not a number.
+        let found = self.scan.farthest(direction);
+        // Copies of the first point fill the last block.
+        if found < self.points.len() { found as u32 } else { 0 }
     }
 
     /// Bounds in the hull's frame.
@@ -86,95 +89,17 @@ impl ConvexHull {
         for (i, p) in points.iter().enumerate() {
             position(|| format!("points[{i}]"), *p)?;
         }
-        Ok(Self::spanned_by(points))
+        // Products round, so the surface has to be proved anew.
+        let surface = self.surface.as_ref().and_then(|surface| HullSurface::proved(&points, surface.triangles()));
+        Ok(Self::spanned_by(Spanning { points, surface }))
     }
 
-    fn spanned_by(points: Vec<Vec3>) -> Self {
+    fn spanned_by(Spanning { points, surface }: Spanning) -> Self {
         let bounds = Aabb::around(points.iter().copied());
         let radius = points.iter().map(|p| length(*p)).fold(0.0, f64::max);
-        let block = |chunk: &[Vec3]| {
-            [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
-        };
-        let blocks = points.chunks(LANES).map(block).collect();
-        Self { points, blocks, bounds, radius }
-    }
-}
-
-/// The points without repetitions, first occurrences in order.
-fn distinct(points: &[Vec3]) -> Vec<Vec3> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    let key = |i: usize| [points[i].x + 0.0, points[i].y + 0.0, points[i].z + 0.0]; // + 0.0: -0 equals 0
-    order.sort_by(|&i, &j| key(i).partial_cmp(&key(j)).expect("points are finite").then(i.cmp(&j)));
-    order.dedup_by(|later, first| key(*later) == key(*first));
-    order.sort_unstable();
-    order.into_iter().map(|i| points[i]).collect()
-}
-
-/// The hull's corners, by parry's hull builder, if its answer stands up to a check; `None` means keep every point.
-fn extreme_points(points: &[Vec3]) -> Option<Vec<Vec3>> {
-    use parry3d_f64::math::Vector;
-    use parry3d_f64::transformation::try_convex_hull;
-
-    if points.len() < 5 {
-        return None; // Nothing much to leave out.
-    }
-    // The builder has absolute tolerances, so it is shown points of unit size, centred. Both steps round, but its
-    // answer is only a choice among our points, and the check below is made with the points as given.
-    let bounds = Aabb::around(points.iter().copied());
-    let (center, size) = (bounds.center(), bounds.half_extents().amax());
-    if size <= f64::MIN_POSITIVE {
-        return None;
-    }
-    let unit: Vec<Vector> = points.iter().map(|p| (p - center) / size).map(|p| Vector::new(p.x, p.y, p.z)).collect();
-    // A builder that panics on a degenerate cloud is a builder that gave up.
-    let (corners, faces) = std::panic::catch_unwind(|| try_convex_hull(&unit)).ok()?.ok()?;
-    let mut kept = vec![false; points.len()];
-    let mut faces_by_point = Vec::with_capacity(faces.len());
-    let bits = |p: &Vector| [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits()); // + 0.0: -0 equals 0
-    let mut first_at = HashMap::with_capacity(unit.len());
-    unit.iter().enumerate().for_each(|(i, p)| _ = first_at.entry(bits(p)).or_insert(i));
-    let index: Vec<usize> = corners.iter().map(|corner| first_at.get(&bits(corner)).copied()).collect::<Option<_>>()?;
-    for face in &faces {
-        let face = face.map(|corner| index[corner as usize]);
-        face.iter().for_each(|&i| kept[i] = true);
-        faces_by_point.push(face);
-    }
-    if kept.iter().any(|kept| !kept) {
-        let planes: Vec<Plane> =
-            faces_by_point.iter().map(|face| Plane::through(*face, points, size)).collect::<Option<_>>()?;
-        for (p, kept) in points.iter().zip(&mut kept) {
-            *kept = *kept || !planes.iter().all(|plane| plane.has_deep_behind(*p));
-        }
-    }
-    Some(points.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(p, _)| *p).collect())
-}
-
-/// A point is left out only if it is this far behind every face, in units of the hull's size. The builder's faces are off
-/// by some 1e-15 of the size, and where two of them meet at an angle t the true hull may end 1e-15 / sin(t / 2) before
-/// their planes do; a hull whose faces meet at less than 1e-8 is thinner than this depth, so nothing in it is left out.
-const DEPTH_OF_INNER_POINTS: f64 = 1e-6;
-
-/// The plane of a face.
-struct Plane {
-    point: Vec3,
-    normal: Vec3,
-    /// What the product with the normal has to stay below, for a point deep enough behind.
-    depth: f64,
-}
-
-impl Plane {
-    /// None for a face too thin to have a plane that can be trusted to a millionth: it encloses nothing.
-    fn through(face: [usize; 3], points: &[Vec3], size: f64) -> Option<Self> {
-        let [a, b, c] = face.map(|i| points[i]);
-        let normal = (b - a).cross(&(c - a));
-        let area = normal.norm();
-        // The negation also catches an area that is NaN by overflow.
-        let thin = !(area > 1e-8 * (b - a).norm() * (c - a).norm());
-        (!thin).then_some(Self { point: a, normal, depth: -DEPTH_OF_INNER_POINTS * size * area })
-    }
-
-    fn has_deep_behind(&self, p: Vec3) -> bool {
-        self.normal.dot(&(p - self.point)) < self.depth
+        let climbed = surface.as_ref().filter(|_| points.len() >= CLIMBED);
+        let starts = climbed.map(|surface| StartTable::new(&points, surface));
+        Self { scan: Scan::new(&points), points, surface, starts, bounds, radius }
     }
 }
 

@@ -1,14 +1,19 @@
 //! Lengths of vectors whose squares do not fit into an `f64`.
 
 use super::Vec3;
+use super::vector::greatest_size;
 
 /// |v|, also where the squares of its components would over- or underflow. Zero only for the zero vector.
 #[must_use]
+#[inline]
 pub fn length(v: Vec3) -> f64 {
-    let largest = v.amax();
-    if (1e-140..=1e140).contains(&largest) {
-        return v.norm();
-    }
+    let square = v.norm_squared();
+    if (1e-280..=1e280).contains(&square) { square.sqrt() } else { extreme_length(v) }
+}
+
+#[cold]
+fn extreme_length(v: Vec3) -> f64 {
+    let largest = greatest_size(v);
     if largest == 0.0 || !largest.is_finite() {
         return largest;
     }

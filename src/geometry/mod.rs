@@ -6,6 +6,10 @@
 mod aabb;
 mod compound;
 mod convex_hull;
+mod hull_builder;
+mod hull_climb;
+mod hull_scan;
+mod hull_surface;
 mod invalid_shape;
 mod length;
 pub mod mesh_file;
@@ -14,10 +18,12 @@ mod pose;
 mod shape;
 pub mod tolerance;
 mod triangle_mesh;
+pub mod vector;
 
 pub use aabb::Aabb;
 pub use compound::{Compound, Part};
 pub use convex_hull::ConvexHull;
+pub use hull_surface::HullSurface;
 pub use invalid_shape::InvalidShape;
 pub use length::length;
 pub use mesh_tree::{MeshTree, TreeNode};

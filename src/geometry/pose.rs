@@ -197,31 +197,60 @@ pub struct Placement {
 impl Placement {
     /// The point `p` of B, in A.
     #[must_use]
+    #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {
-        self.rotation * p + self.translation
+        self.direction(p) + self.translation
     }
 
     /// The direction `d` of B, in A.
     #[must_use]
+    #[inline]
     pub fn direction(&self, d: Vec3) -> Vec3 {
-        self.rotation * d
+        product(&self.rotation, d)
     }
 
     /// The direction `d` of A, in B.
     #[must_use]
+    #[inline]
     pub fn direction_into(&self, d: Vec3) -> Vec3 {
-        self.rotation.tr_mul(&d)
+        transposed_product(&self.rotation, d)
     }
 
     /// B in A, for `a` and `b` placed in one common frame. The difference of positions is taken before
     /// rotating, so that a pair far from the origin is as accurate as one near it.
     #[must_use]
+    #[inline]
     pub fn relative(a: &Self, b: &Self) -> Self {
+        let column = |j: usize| {
+            let m = &b.rotation;
+            transposed_product(&a.rotation, Vec3::new(m[(0, j)], m[(1, j)], m[(2, j)]))
+        };
+        let [x, y, z] = [column(0), column(1), column(2)];
         Self {
-            rotation: a.rotation.tr_mul(&b.rotation),
-            translation: a.rotation.tr_mul(&(b.translation - a.translation)),
+            rotation: Mat3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z),
+            translation: transposed_product(&a.rotation, b.translation - a.translation),
         }
     }
+}
+
+/// m v, written out: the general product is not always inlined, and this one is at the bottom of every inner loop.
+#[inline(always)]
+fn product(m: &Mat3, v: Vec3) -> Vec3 {
+    Vec3::new(
+        m[(0, 0)] * v.x + m[(0, 1)] * v.y + m[(0, 2)] * v.z,
+        m[(1, 0)] * v.x + m[(1, 1)] * v.y + m[(1, 2)] * v.z,
+        m[(2, 0)] * v.x + m[(2, 1)] * v.y + m[(2, 2)] * v.z,
+    )
+}
+
+/// mᵀ v.
+#[inline(always)]
+fn transposed_product(m: &Mat3, v: Vec3) -> Vec3 {
+    Vec3::new(
+        m[(0, 0)] * v.x + m[(1, 0)] * v.y + m[(2, 0)] * v.z,
+        m[(0, 1)] * v.x + m[(1, 1)] * v.y + m[(2, 1)] * v.z,
+        m[(0, 2)] * v.x + m[(1, 2)] * v.y + m[(2, 2)] * v.z,
+    )
 }
 
 #[cfg(test)]

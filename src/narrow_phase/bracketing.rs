@@ -12,22 +12,27 @@ pub(super) struct Target<'a> {
     pub radii: f64,
     /// The cores are the shapes' times this power of two, so that no product over- or underflows.
     pub scale: f64,
+    /// 1 / scale, exactly.
+    pub unscale: f64,
 }
 
 impl Target<'_> {
     /// Bracket of the shapes, metres, from bounds on the (scaled) cores. Rounded outwards: the sum of the radii, the
     /// difference and the product round once each; four units in the last place cover them.
+    #[inline]
     pub fn bracket(&self, lower: f64, upper: f64) -> Bracket {
         let denormal = if self.scale == 1.0 { 0.0 } else { f64::MIN_POSITIVE };
         let slack = |bound: f64| 4.0 * UNIT_ROUNDOFF * (bound.abs() + self.radii) + denormal;
-        let (lower, upper) = (lower / self.scale, upper / self.scale);
+        let (lower, upper) = (lower * self.unscale, upper * self.unscale);
         Bracket { lower: lower - self.radii - slack(lower), upper: upper - self.radii + slack(upper) }
     }
 
+    #[inline]
     pub fn is_decided(&self, bracket: &Bracket) -> bool {
         self.goal.is_decided(bracket)
     }
 
+    #[inline]
     pub fn is_met(&self, bracket: &Bracket) -> bool {
         match self.goal.depth {
             Depth::Verdict => false,

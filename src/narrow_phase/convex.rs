@@ -6,11 +6,12 @@ use super::bracketing::Target;
 use super::epa::{Epa, epa};
 use super::gjk::{End, Gjk, gjk};
 use super::goal::{Depth, Goal};
-use super::minkowski::{Difference, Vertex};
+use super::minkowski::Difference;
 use super::outcome::{Cost, Separation, Termination};
-use super::polytope::Polytope;
+use super::polytope::inner_ball;
 use super::support::radius;
 use crate::geometry::tolerance::UNSCALED_EXTENT;
+use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, length};
 
 /// A convex, bounded core in its place, with the radius of the ball swept over it.
@@ -34,7 +35,7 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
     let difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
-    let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale };
+    let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
     let found = solve(&difference, &target, &mut cost);
     place(&found, a, &target, &difference, cost)
@@ -49,11 +50,14 @@ fn solve(difference: &Difference, target: &Target, cost: &mut Cost) -> Epa {
         End::Converged => stopped(Termination::Converged),
         End::Decided => stopped(Termination::Decided),
         End::Stalled if at_floor => stopped(Termination::RoundingFloor),
-        End::Stalled => epa(difference, found.feature.vertices(), stopped(Termination::IterationLimit), target, cost),
+        End::Stalled => epa(difference, found.simplex.vertices(), stopped(Termination::IterationLimit), target, cost),
         End::Limit => stopped(Termination::IterationLimit),
         End::OutOfTime => stopped(Termination::TimeLimit),
-        End::Enclosed(vertices) => {
-            let overlap = Epa { upper: inner_ball(vertices, difference.error), ..stopped(Termination::Decided) };
+        End::Enclosed => {
+            let vertices = found.simplex.enclosing();
+            // The ball around the origin that no face of the tetrahedron cuts.
+            let upper = difference.error - inner_ball(vertices);
+            let overlap = Epa { upper, ..stopped(Termination::Decided) };
             let measured = target.goal.depth == Depth::Penetration;
             if !measured && target.is_decided(&target.bracket(overlap.lower, overlap.upper)) {
                 return overlap;
@@ -68,16 +72,9 @@ fn known(found: &Gjk, termination: Termination) -> Epa {
         lower: found.lower,
         upper: found.upper,
         direction: found.direction,
-        nearest: found.feature.nearest(),
+        nearest: found.simplex.nearest(),
         termination,
     }
-}
-
-/// Upper bound of the signed distance when the origin is strictly inside a tetrahedron: minus the radius of the ball
-/// around it that no face cuts, or the error when that is larger.
-fn inner_ball(vertices: [Vertex; 4], error: f64) -> f64 {
-    let nearest = Polytope::tetrahedron(vertices).and_then(|mut p| p.nearest_face().map(|f| p.face(f).offset));
-    error - nearest.unwrap_or(0.0).max(0.0)
 }
 
 /// From the scaled frame of A to the frame of both placements, swept radii included.
@@ -93,7 +90,7 @@ fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost:
     };
     let signed_distance = (of_cores / target.scale - target.radii).clamp(bracket.lower, bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.
-    let normal = a.at.direction(-found.direction);
+    let normal = a.at.direction(opposite(found.direction));
     let point_on_a = a.at.point(found.nearest.on_a / target.scale) + normal * a.swept_radius;
     let point_on_b = point_on_a + normal * signed_distance;
     Separation {

@@ -8,13 +8,16 @@
 //!   strictly inside the surface (exact test): the ball around it that no face cuts, for the surface is in C's hull.
 //! - A difference without volume is recognised, and separated along its thinnest direction.
 
+use arrayvec::ArrayVec;
+
 use super::bracketing::Target;
 use super::minkowski::{Difference, Vertex};
 use super::outcome::{Cost, Termination};
 use super::polytope::Polytope;
-use super::simplex::triangle;
+use super::simplex::{nearest_of_triangle, orientation};
 use super::support::unit;
 use crate::geometry::Vec3;
+use crate::geometry::vector::opposite;
 
 /// Rounds at most. Pairs with one deepest direction need fewer than 150. Bodies of revolution about one axis have a
 /// whole circle of them, and each round narrows the bracket at one place of it.
@@ -39,10 +42,18 @@ pub(super) struct Epa {
 }
 
 /// Narrows `known` (valid bounds that GJK found, with the nearest point it found), starting from some vertices of C.
+#[inline(never)]
 pub(super) fn epa(difference: &Difference, seeds: &[Vertex], known: Epa, target: &Target, cost: &mut Cost) -> Epa {
-    let mut pool = seeds.to_vec();
     let mut best = known;
-    match starting_polytope(difference, &mut pool, cost) {
+    let mut polytope = Polytope::new(difference.extent + 2.0 * difference.error);
+    let enclosing = <[Vertex; 4]>::try_from(seeds).ok().filter(|seeds| is_solid(seeds, difference.extent));
+    if let Some(seeds) = enclosing
+        && polytope.start(seeds)
+    {
+        return expand(difference, &mut polytope, best, target, cost);
+    }
+    let mut pool: Pool = seeds.iter().copied().collect();
+    match starting_vertices(difference, &mut pool, cost) {
         Start::Flat(across) => {
             for direction in [across, -across] {
                 cost.supports += 1;
@@ -55,18 +66,24 @@ pub(super) fn epa(difference: &Difference, seeds: &[Vertex], known: Epa, target:
             }
             best
         }
-        Start::Solid(mut polytope) => {
+        Start::Solid(corners) => {
+            polytope.start(corners);
             for vertex in pool {
                 if let Some(face) = polytope.visible_face(&vertex) {
                     polytope.insert(vertex, face);
                 }
             }
-            expand(difference, polytope, best, target, cost)
+            expand(difference, &mut polytope, best, target, cost)
         }
     }
 }
 
-fn expand(difference: &Difference, mut polytope: Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
+/// Whether a tetrahedron is thick enough to grow from without help: a millionth of what it could be.
+fn is_solid(&[a, b, c, d]: &[Vertex; 4], extent: f64) -> bool {
+    (a.w - d.w).dot(&(b.w - d.w).cross(&(c.w - d.w))).abs() > 1e-6 * extent * extent * extent
+}
+
+fn expand(difference: &Difference, polytope: &mut Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
     let error = difference.error;
     best.termination = Termination::IterationLimit;
     // Of faces that cannot be pushed out further.
@@ -87,12 +104,12 @@ fn expand(difference: &Difference, mut polytope: Polytope, mut best: Epa, target
             best.upper = best.upper.min(error - ball);
         }
         let outward = polytope.face(face).normal;
-        let vertex = difference.lowest(-outward);
+        let vertex = difference.lowest(opposite(outward));
         cost.supports += 1;
         cost.epa_iterations += 1;
-        if raise_lower(&mut best, -outward, -outward.dot(&vertex.w), difference) {
+        if raise_lower(&mut best, opposite(outward), -outward.dot(&vertex.w), difference) {
             let [a, b, c] = polytope.corners(face);
-            best.nearest = triangle(a, b, c).nearest();
+            best.nearest = nearest_of_triangle(a, b, c, difference.extent);
             if !encloses {
                 best.upper = best.upper.min(best.nearest.w.norm() + error);
             }
@@ -120,6 +137,9 @@ fn expand(difference: &Difference, mut polytope: Polytope, mut best: Epa, target
             }
             continue;
         }
+        if polytope.is_full() {
+            break;
+        }
         polytope.insert(vertex, face);
         encloses = encloses || polytope.encloses_origin();
     }
@@ -136,17 +156,21 @@ fn raise_lower(best: &mut Epa, direction: Vec3, value: f64, difference: &Differe
     better
 }
 
+/// Vertices to start from.
+type Pool = ArrayVec<Vertex, 20>;
+
 enum Start {
-    Solid(Polytope),
+    /// Four that span a volume.
+    Solid([Vertex; 4]),
     /// No volume; a unit direction across which it is thin.
     Flat(Vec3),
 }
 
-/// A tetrahedron with volume from `pool`, to which support points are added as far as they are needed.
-fn starting_polytope(difference: &Difference, pool: &mut Vec<Vertex>, cost: &mut Cost) -> Start {
+/// Four vertices with volume from `pool`, to which support points are added as far as they are needed.
+fn starting_vertices(difference: &Difference, pool: &mut Pool, cost: &mut Cost) -> Start {
     // Thinner than the error of its own vertices is without volume.
     let thin = 4.0 * difference.error;
-    let mut ask = |directions: &[Vec3], pool: &mut Vec<Vertex>| {
+    let mut ask = |directions: &[Vec3], pool: &mut Pool| {
         for d in directions {
             pool.push(difference.lowest(*d));
             pool.push(difference.lowest(-d));
@@ -180,7 +204,7 @@ fn starting_polytope(difference: &Difference, pool: &mut Vec<Vertex>, cost: &mut
     if thickness <= thin {
         return Start::Flat(normal);
     }
-    Polytope::tetrahedron([a, b, c, d]).map_or(Start::Flat(normal), Start::Solid)
+    if orientation(a.w, b.w, c.w, d.w) == 0.0 { Start::Flat(normal) } else { Start::Solid([a, b, c, d]) }
 }
 
 /// The vertex of greatest `measure`, and the measure; the first among equals.

@@ -4,7 +4,7 @@
 //! opposite to it, and reduces the enlarged simplex to its nearest feature again. Every direction that was asked about
 //! bounds the distance from below, the nearest point bounds it from above; the best of both are kept, never the last.
 //! Sources: Gilbert, Johnson, Keerthi 1988; van den Bergen 1999. Departures: the bracket decides when to stop, and the
-//! search direction is the feature's own (see [`Feature::direction`]), which near a contact is far better than the
+//! search direction is the feature's own (see [`Simplex::direction`]), which near a contact is far better than the
 //! nearest point's.
 //!
 //! It ends when
@@ -14,11 +14,12 @@
 //! - the cap on rounds is reached, or the caller's time.
 
 use super::bracketing::Target;
-use super::minkowski::{Difference, Vertex};
+use super::minkowski::Difference;
 use super::outcome::Cost;
-use super::simplex::{Feature, Nearest, segment, tetrahedron, triangle};
+use super::simplex::{Simplex, Step};
 use super::support::unit;
 use crate::geometry::Vec3;
+use crate::geometry::vector::is_same;
 
 /// Rounds at most. Smooth pairs need some 50 for a relative width of 1e-9; the most seen in the test corpus is below
 /// 100, on cones and ellipsoids of extreme proportions.
@@ -31,7 +32,7 @@ pub(super) struct Gjk {
     /// The unit direction that proves it: `direction . c >= lower` for all c in C.
     pub direction: Vec3,
     /// The nearest feature found, also when the origin is enclosed (then the last before).
-    pub feature: Feature,
+    pub simplex: Simplex,
     /// `|x|` of the nearest point plus its error, metres.
     pub upper: f64,
     /// How it ended.
@@ -39,13 +40,14 @@ pub(super) struct Gjk {
 }
 
 /// How GJK ended.
+#[derive(Clone, Copy)]
 pub(super) enum End {
     /// The bracket is as narrow as asked.
     Converged,
     /// The bracket decides what was asked.
     Decided,
-    /// The origin is strictly inside these four vertices.
-    Enclosed([Vertex; 4]),
+    /// The origin is strictly inside of the simplex and its last vertex.
+    Enclosed,
     /// No progress in `f64`; the bracket may still be wide next to a small distance.
     Stalled,
     /// The cap on rounds.
@@ -55,76 +57,65 @@ pub(super) enum End {
 }
 
 /// Runs GJK on `difference`, starting between the centres.
+#[inline]
 pub(super) fn gjk(difference: &Difference, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
-    let mut direction = unit(difference.centers()).unwrap_or_else(Vec3::x);
+    let direction = unit(difference.centers()).unwrap_or_else(Vec3::x);
     let first = difference.lowest(direction);
     cost.supports += 1;
-    let mut best = Gjk {
-        lower: direction.dot(&first.w) - error,
-        direction,
-        feature: Feature::point(first),
-        upper: first.w.norm() + error,
-        end: End::Limit,
-    };
+    let lower = direction.dot(&first.w) - error;
+    let upper = first.w.norm() + error;
+    let mut best = Gjk { lower, direction, simplex: Simplex::point(first), upper, end: End::Limit };
+    if let Some(end) = settled(&best, target) {
+        best.end = end;
+        return best;
+    }
     for _ in 0..MAX_ITERATIONS {
-        if let Some(end) = settled(&best, target) {
-            return Gjk { end, ..best };
-        }
         if target.must_stop() {
-            return Gjk { end: End::OutOfTime, ..best };
+            best.end = End::OutOfTime;
+            break;
         }
-        let x = best.feature.nearest().w;
-        let Some(toward) = unit(best.feature.direction(x)) else {
-            return Gjk { end: End::Stalled, ..best }; // The origin is on the feature.
+        let Some(direction) = unit(best.simplex.direction()) else {
+            best.end = End::Stalled; // The origin is on the feature.
+            break;
         };
-        direction = toward;
         let vertex = difference.lowest(direction);
         cost.supports += 1;
         cost.gjk_iterations += 1;
-        let value = direction.dot(&vertex.w);
-        if value - error > best.lower {
-            best.lower = value - error;
+        let value = direction.dot(&vertex.w) - error;
+        if value > best.lower {
+            best.lower = value;
             best.direction = direction;
-            if let Some(end) = settled(&best, target) {
-                return Gjk { end, ..best };
-            }
         }
-        if best.feature.vertices().iter().any(|v| v.w == vertex.w) {
-            return Gjk { end: End::Stalled, ..best };
+        // Here the best of both sides meet: the point of the last round, and the direction it led to.
+        if let Some(end) = settled(&best, target) {
+            best.end = end;
+            break;
         }
-        match reduce(&best.feature, vertex) {
-            Nearest::Enclosed => {
-                let [a, b, c] = best.feature.vertices;
-                return Gjk { end: End::Enclosed([a, b, c, vertex]), ..best };
+        if best.simplex.vertices().iter().any(|v| is_same(v.w, vertex.w)) {
+            best.end = End::Stalled;
+            break;
+        }
+        match best.simplex.add(vertex, difference.extent) {
+            Step::Reduced => best.upper = best.simplex.x.norm() + error,
+            Step::NoNearer => {
+                best.end = End::Stalled;
+                break;
             }
-            Nearest::Outside(feature) => {
-                // Comparison order matters: a NaN is no progress.
-                if !(feature.nearest().w.norm_squared() < x.norm_squared()) {
-                    return Gjk { end: End::Stalled, ..best };
-                }
-                best.feature = feature;
-                best.upper = feature.nearest().w.norm() + error;
+            Step::Enclosed => {
+                best.end = End::Enclosed;
+                break;
             }
         }
     }
     best
 }
 
+#[inline]
 fn settled(best: &Gjk, target: &Target) -> Option<End> {
     let bracket = target.bracket(best.lower, best.upper);
     if target.is_decided(&bracket) {
         return Some(End::Decided);
     }
     target.is_met(&bracket).then_some(End::Converged)
-}
-
-/// The feature nearest the origin of a feature and one more vertex.
-fn reduce(feature: &Feature, vertex: Vertex) -> Nearest {
-    let [a, b, c] = feature.vertices;
-    match feature.len {
-        1 => Nearest::Outside(segment(a, vertex)),
-        2 => Nearest::Outside(triangle(a, b, vertex)),
-        _ => tetrahedron(a, b, c, vertex),
-    }
 }

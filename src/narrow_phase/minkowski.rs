@@ -3,20 +3,23 @@
 //! A and B meet where C holds the origin, and the signed distance of A and B is that of the origin to C. Everything
 //! is in A's frame, so that nothing depends on where the pair is in the world.
 
+use std::cell::Cell;
+
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Vec3, length};
 
-use super::support::{radius, support};
+use super::support::{center, farthest, radius};
 
-/// A vertex of the difference with the points it came from. Metres, frame of A.
+/// A vertex of the difference with the point of A it came from. Metres, frame of A.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vertex {
-    /// `on_a - on_b`.
+    /// A point of A less one of B.
     pub w: Vec3,
     /// The point of A.
     pub on_a: Vec3,
-    /// The point of B.
-    pub on_b: Vec3,
+    /// Which of the corners of A and of B, where they have corners.
+    pub corners: [u32; 2],
 }
 
 /// The difference of two convex, bounded cores.
@@ -24,29 +27,36 @@ pub(super) struct Difference<'a> {
     a: &'a Core,
     b: &'a Core,
     b_in_a: Placement,
+    /// No vertex is farther than this from the origin, metres.
+    pub extent: f64,
     /// E = 112 u S plus what the placement of the cores is off by, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the
     /// true difference is within this of the value at the vertex found, for a unit d. Metres. Derived in
     /// `docs/derivations/bracket.md`.
     pub error: f64,
+    /// The corners found last, where a search along edges may start.
+    hints: Cell<[u32; 2]>,
 }
 
 impl<'a> Difference<'a> {
     /// `placement_error`: how far a point of B may be from its stored place in A's frame by roundings before, metres.
     pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, placement_error: f64) -> Self {
         let extent = radius(a) + radius(b) + length(b_in_a.translation);
-        Self { a, b, b_in_a, error: SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error }
+        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
+        Self { a, b, b_in_a, extent, error, hints: Cell::new([0; 2]) }
     }
 
     /// The vertex where `direction . c` is least.
+    #[inline]
     pub fn lowest(&self, direction: Vec3) -> Vertex {
-        let on_a = support(self.a, -direction);
-        let on_b = self.b_in_a.point(support(self.b, self.b_in_a.direction_into(direction)));
-        Vertex { w: on_a - on_b, on_a, on_b }
+        let [hint_a, hint_b] = self.hints.get();
+        let (on_a, corner_a) = farthest(self.a, opposite(direction), hint_a);
+        let (on_b, corner_b) = farthest(self.b, self.b_in_a.direction_into(direction), hint_b);
+        self.hints.set([corner_a, corner_b]);
+        Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [corner_a, corner_b] }
     }
 
     /// A first guess of the direction from the origin to the difference: between the centres of the bounds.
     pub fn centers(&self) -> Vec3 {
-        let center = |core: &Core| core.bounds().map_or_else(Vec3::zeros, |bounds| bounds.center());
         center(self.a) - self.b_in_a.point(center(self.b))
     }
 }

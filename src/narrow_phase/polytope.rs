@@ -4,109 +4,120 @@
 //! not seen. So the surface is the exact convex hull of its vertices at every step: closed, its horizon one loop, and no
 //! new face is flat (the vertex is strictly beyond the seen face on each edge of the horizon, so it is not on the edge's
 //! line). Rounding enters only in the normals and offsets, and there with a bound.
+//!
+//! Everything lives on the stack, in lists of fixed capacity.
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use arrayvec::ArrayVec;
 
 use super::minkowski::Vertex;
-use super::simplex::{orientation, triangle};
+use super::simplex::orientation;
 use super::support::unit;
 use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
+use crate::geometry::vector::sum_of_sizes;
+
+/// Vertices at most.
+const VERTICES: usize = 520;
+
+/// Faces at most: a closed surface of triangles has 2 V - 4.
+const FACES: usize = 2 * VERTICES;
 
 /// A triangle of the surface, counter-clockwise from outside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     /// Indices of the corners.
-    pub corners: [usize; 3],
+    corners: [u16; 3],
     /// Face across the edge from corner i to corner i + 1.
-    adjacent: [usize; 3],
+    adjacent: [u16; 3],
     /// Outward unit normal, within rounding.
     pub normal: Vec3,
     /// No point of the triangle is nearer the origin plane across `normal` than this: proved, whatever the normal's
     /// error is. Negative when the origin is outside. Metres.
     pub offset: f64,
+    /// Product of two edges: perpendicular to the face, outward.
+    product: Vec3,
+    /// Whether the origin is strictly on the inner side.
+    holds_origin: bool,
     alive: bool,
 }
 
-/// The surface, and its faces in order of their offset.
+/// The surface.
 pub(super) struct Polytope {
-    vertices: Vec<Vertex>,
-    faces: Vec<Face>,
-    queue: BinaryHeap<Queued>,
-    /// While a horizon is covered: the new face on the edge that starts, and that ends, at a vertex.
-    starting: Vec<usize>,
-    ending: Vec<usize>,
-}
-
-#[derive(PartialEq)]
-struct Queued {
-    offset: f64,
-    face: usize,
-}
-
-impl Eq for Queued {}
-
-impl Ord for Queued {
-    /// Least offset first; equals in the order they were made.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.offset.total_cmp(&self.offset).then(other.face.cmp(&self.face))
-    }
-}
-
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
+    vertices: ArrayVec<Vertex, VERTICES>,
+    faces: ArrayVec<Face, FACES>,
+    /// Offset of each face that may still be pushed out; infinite for the others.
+    queue: ArrayVec<f64, FACES>,
+    /// Slots of faces that are gone.
+    free: ArrayVec<u16, FACES>,
+    /// The faces at the newest vertex.
+    fan: ArrayVec<u16, FACES>,
+    /// Live faces that the origin is not strictly inside of.
+    not_holding: usize,
+    /// The rounded side of a point is right beyond this.
+    doubt: f64,
 }
 
 /// An edge between a face that is seen and one that is not, as the seen face runs along it.
+#[derive(Clone, Copy)]
 struct HorizonEdge {
-    from: usize,
-    to: usize,
-    beyond: usize,
+    from: u16,
+    to: u16,
+    beyond: u16,
+    /// Which edge of `beyond` it is.
+    edge: u8,
 }
 
 impl Polytope {
-    /// A tetrahedron; none when it is flat.
-    pub fn tetrahedron([a, b, c, d]: [Vertex; 4]) -> Option<Self> {
+    /// Nothing yet. `extent`: no vertex will be farther from the origin, metres.
+    #[inline(always)]
+    pub fn new(extent: f64) -> Self {
+        // The side of a point is a product of three differences of up to 2 S; each of its 6 terms takes part in 10 roundings.
+        let doubt = 512.0 * UNIT_ROUNDOFF * extent * extent * extent;
+        Self {
+            vertices: ArrayVec::new_const(),
+            faces: ArrayVec::new_const(),
+            queue: ArrayVec::new_const(),
+            free: ArrayVec::new_const(),
+            fan: ArrayVec::new_const(),
+            not_holding: 0,
+            doubt,
+        }
+    }
+
+    /// Becomes a tetrahedron; false when that is flat.
+    pub fn start(&mut self, [a, b, c, d]: [Vertex; 4]) -> bool {
         let volume = orientation(a.w, b.w, c.w, d.w);
         if volume == 0.0 {
-            return None;
+            return false;
         }
         // d is below the face abc when the orientation is positive, as it should be.
-        let vertices = if volume > 0.0 { vec![a, b, c, d] } else { vec![b, a, c, d] };
-        let mut polytope = Self {
-            vertices,
-            faces: Vec::with_capacity(64),
-            queue: BinaryHeap::with_capacity(64),
-            starting: Vec::new(),
-            ending: Vec::new(),
-        };
+        self.vertices.extend(if volume > 0.0 { [a, b, c, d] } else { [b, a, c, d] });
         for (corners, adjacent) in
             [([0, 1, 2], [1, 3, 2]), ([0, 3, 1], [2, 3, 0]), ([0, 2, 3], [0, 3, 1]), ([1, 3, 2], [1, 2, 0])]
         {
-            polytope.add_face(corners, adjacent);
+            self.add_face(corners, adjacent);
         }
-        Some(polytope)
+        true
     }
 
     /// Takes out of the queue and returns the face of least offset.
     pub fn nearest_face(&mut self) -> Option<usize> {
-        while let Some(Queued { face, .. }) = self.queue.pop() {
-            if self.faces[face].alive {
-                return Some(face);
-            }
+        let mut least = f64::INFINITY;
+        for &offset in &self.queue {
+            least = if offset < least { offset } else { least };
         }
-        None
+        if least == f64::INFINITY {
+            return None;
+        }
+        let face = self.queue.iter().position(|&offset| offset == least)?;
+        self.queue[face] = f64::INFINITY;
+        Some(face)
     }
 
     /// The face of least offset among those at the newest vertex; they stay in the queue.
     pub fn nearest_newest_face(&self) -> Option<usize> {
-        let apex = self.vertices.len() - 1;
-        let at_apex = |f: &usize| self.faces[*f].alive && self.faces[*f].corners.contains(&apex);
-        let newest = (0..self.faces.len()).rev().take_while(|f| self.faces[*f].corners.contains(&apex)).filter(at_apex);
-        newest.min_by(|&f, &g| self.faces[f].offset.total_cmp(&self.faces[g].offset))
+        let offset = |face: u16| self.faces[usize::from(face)].offset;
+        self.fan.iter().copied().min_by(|&f, &g| offset(f).total_cmp(&offset(g))).map(usize::from)
     }
 
     pub fn face(&self, face: usize) -> &Face {
@@ -115,17 +126,22 @@ impl Polytope {
 
     /// The three vertices of a face.
     pub fn corners(&self, face: usize) -> [Vertex; 3] {
-        self.faces[face].corners.map(|i| self.vertices[i])
+        self.faces[face].corners.map(|i| self.vertices[usize::from(i)])
     }
 
     /// Whether the vertex is strictly outside the plane of the face. Exact.
     pub fn is_outside(&self, face: usize, vertex: &Vertex) -> bool {
-        self.side(face, vertex.w) < 0.0
+        self.side(&self.faces[face], vertex.w) < 0.0
     }
 
     /// Whether the origin is strictly inside. Exact.
     pub fn encloses_origin(&self) -> bool {
-        (0..self.faces.len()).all(|f| !self.faces[f].alive || self.side(f, Vec3::zeros()) > 0.0)
+        self.not_holding == 0
+    }
+
+    /// Whether there is no room for another vertex.
+    pub fn is_full(&self) -> bool {
+        self.vertices.is_full()
     }
 
     /// A live face that the vertex is strictly outside of.
@@ -135,70 +151,110 @@ impl Polytope {
 
     /// Grows the surface to the hull of itself and `vertex`, which is strictly outside of `seen`.
     pub fn insert(&mut self, vertex: Vertex, seen: usize) {
-        let mut horizon = Vec::with_capacity(16);
-        let mut open = vec![seen];
-        self.faces[seen].alive = false;
-        while let Some(f) = open.pop() {
-            let Face { corners, adjacent, .. } = self.faces[f];
-            for i in 0..3 {
-                let beyond = adjacent[i];
-                if !self.faces[beyond].alive {
-                    continue; // Seen already.
-                }
-                let (from, to) = (corners[i], corners[(i + 1) % 3]);
-                if self.is_outside(beyond, &vertex) {
-                    self.faces[beyond].alive = false;
-                    open.push(beyond);
-                } else {
-                    horizon.push(HorizonEdge { from, to, beyond });
-                }
+        // Depth first, each face's edges counter-clockwise from the one it was entered by: so the edges of the horizon
+        // come in the order in which it runs.
+        let mut horizon = ArrayVec::<HorizonEdge, FACES>::new();
+        let mut open = ArrayVec::<(u16, u8), { 2 * FACES }>::new();
+        self.remove(seen);
+        open.extend([2, 1, 0].map(|edge| (seen as u16, edge)));
+        while let Some((f, edge)) = open.pop() {
+            let i = usize::from(edge);
+            let Face { corners, adjacent, .. } = self.faces[usize::from(f)];
+            let beyond = &self.faces[usize::from(adjacent[i])];
+            if !beyond.alive {
+                continue; // Seen already.
+            }
+            let (from, to) = (corners[i], corners[(i + 1) % 3]);
+            let across = if beyond.corners[0] == to { 0 } else { 1 + u8::from(beyond.corners[2] == to) };
+            if self.side(beyond, vertex.w) < 0.0 {
+                self.remove(usize::from(adjacent[i]));
+                open.extend([(across + 2) % 3, (across + 1) % 3].map(|edge| (adjacent[i], edge)));
+            } else {
+                horizon.push(HorizonEdge { from, to, beyond: adjacent[i], edge: across });
             }
         }
         self.cover(&horizon, vertex);
     }
 
+    fn remove(&mut self, face: usize) {
+        let gone = &mut self.faces[face];
+        gone.alive = false;
+        self.not_holding -= usize::from(!gone.holds_origin);
+        self.queue[face] = f64::INFINITY;
+        self.free.push(face as u16);
+    }
+
     /// Joins the horizon to the vertex by a fan of faces.
     fn cover(&mut self, horizon: &[HorizonEdge], vertex: Vertex) {
-        let apex = self.vertices.len();
+        let apex = self.vertices.len() as u16;
         self.vertices.push(vertex);
-        let first = self.faces.len();
-        // The horizon is one loop, so each of its vertices starts one edge and ends another.
-        self.starting.resize(apex + 1, 0);
-        self.ending.resize(apex + 1, 0);
-        for (face, edge) in (first..).zip(horizon) {
-            self.starting[edge.from] = face;
-            self.ending[edge.to] = face;
-        }
+        self.fan.clear();
         for edge in horizon {
-            let (next, previous) = (self.starting[edge.to], self.ending[edge.from]);
-            let face = self.add_face([edge.from, edge.to, apex], [edge.beyond, next, previous]);
-            let beyond = &mut self.faces[edge.beyond];
-            let across = beyond.corners.iter().position(|&c| c == edge.to).expect("neighbours share the edge");
-            beyond.adjacent[across] = face;
+            // Which faces are next in the fan is filled in when all of them have a slot.
+            let face = self.add_face([edge.from, edge.to, apex], [edge.beyond, 0, 0]);
+            self.faces[usize::from(edge.beyond)].adjacent[usize::from(edge.edge)] = face;
+            self.fan.push(face);
+        }
+        let count = horizon.len();
+        for i in 0..count {
+            debug_assert_eq!(horizon[i].to, horizon[(i + 1) % count].from, "the horizon is one loop");
+            let (next, previous) = (self.fan[(i + 1) % count], self.fan[(i + count - 1) % count]);
+            let face = &mut self.faces[usize::from(self.fan[i])];
+            (face.adjacent[1], face.adjacent[2]) = (next, previous);
         }
     }
 
-    fn add_face(&mut self, corners: [usize; 3], adjacent: [usize; 3]) -> usize {
-        let [a, b, c] = corners.map(|i| self.vertices[i]);
-        let normal = unit((b.w - a.w).cross(&(c.w - a.w)))
-            // A needle whose cross product vanishes in f64: the direction of its nearest point will do.
-            .or_else(|| unit(triangle(a, b, c).nearest().w))
-            .unwrap_or_else(Vec3::x);
-        let least = normal.dot(&a.w).min(normal.dot(&b.w)).min(normal.dot(&c.w));
-        let size = a.w.norm_squared().max(b.w.norm_squared()).max(c.w.norm_squared()).sqrt();
-        // Three products and two sums, and the length of the normal: at most 8 roundings of the size.
-        let offset = least - 8.0 * UNIT_ROUNDOFF * size;
-        let face = self.faces.len();
-        self.faces.push(Face { corners, adjacent, normal, offset, alive: true });
-        self.queue.push(Queued { offset, face });
-        face
+    fn add_face(&mut self, corners: [u16; 3], adjacent: [u16; 3]) -> u16 {
+        let [a, b, c] = corners.map(|i| self.vertices[usize::from(i)].w);
+        let product = (b - a).cross(&(c - a));
+        let (normal, offset) = plane(product, a, b, c);
+        let mut face = Face { corners, adjacent, normal, offset, product, holds_origin: false, alive: true };
+        face.holds_origin = self.side(&face, Vec3::zeros()) > 0.0;
+        self.not_holding += usize::from(!face.holds_origin);
+        let slot = match self.free.pop() {
+            Some(slot) => {
+                self.faces[usize::from(slot)] = face;
+                self.queue[usize::from(slot)] = offset;
+                return slot;
+            }
+            None => self.faces.len() as u16,
+        };
+        self.faces.push(face);
+        self.queue.push(offset);
+        slot
     }
 
-    /// Positive inside, negative outside, zero on the plane of the face. Exact.
-    fn side(&self, face: usize, point: Vec3) -> f64 {
-        let [a, b, c] = self.corners(face);
-        orientation(a.w, b.w, c.w, point)
+    /// Positive inside, negative outside, zero on the plane of the face. Exact in its sign.
+    fn side(&self, face: &Face, point: Vec3) -> f64 {
+        let corner = |i: usize| self.vertices[usize::from(face.corners[i])].w;
+        let rounded = -face.product.dot(&(point - corner(0)));
+        if rounded.abs() > self.doubt {
+            return rounded;
+        }
+        orientation(corner(0), corner(1), corner(2), point)
     }
+}
+
+/// Unit normal of a triangle from the product of two of its edges, and an offset along it that none of its points is
+/// below, proved.
+fn plane(product: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, f64) {
+    // A needle whose product vanishes in f64: any direction gives a valid offset.
+    let normal = unit(product).or_else(|| unit(a + b + c)).unwrap_or_else(Vec3::x);
+    let least = normal.dot(&a).min(normal.dot(&b)).min(normal.dot(&c));
+    let size = sum_of_sizes(a).max(sum_of_sizes(b)).max(sum_of_sizes(c));
+    // Three products and two sums, and the length of the normal: at most 8 roundings of the size.
+    (normal, least - 8.0 * UNIT_ROUNDOFF * size)
+}
+
+/// Radius of a ball around the origin that is in the tetrahedron, which strictly encloses the origin: proved, metres.
+pub(super) fn inner_ball([a, b, c, d]: [Vertex; 4]) -> f64 {
+    let flip = if orientation(a.w, b.w, c.w, d.w) > 0.0 { 1.0 } else { -1.0 };
+    let mut least = f64::INFINITY;
+    for (p, q, r) in [(a, b, c), (a, d, b), (a, c, d), (b, d, c)] {
+        let product = (q.w - p.w).cross(&(r.w - p.w)) * flip;
+        least = least.min(plane(product, p.w, q.w, r.w).1);
+    }
+    least.max(0.0)
 }
 
 #[cfg(test)]
@@ -207,20 +263,21 @@ mod tests {
 
     fn vertex(x: f64, y: f64, z: f64) -> Vertex {
         let w = Vec3::new(x, y, z);
-        Vertex { w, on_a: w, on_b: Vec3::zeros() }
+        Vertex { w, on_a: w, corners: [0; 2] }
     }
 
     /// Every edge has its opposite in the face across it, and no vertex is outside of any face.
     fn validate(p: &Polytope) {
         for (f, face) in p.faces.iter().enumerate().filter(|(_, face)| face.alive) {
             for i in 0..3 {
-                let across = &p.faces[face.adjacent[i]];
+                let across = &p.faces[usize::from(face.adjacent[i])];
                 assert!(across.alive);
                 let j = across.corners.iter().position(|&c| c == face.corners[(i + 1) % 3]).unwrap();
                 assert_eq!(across.corners[(j + 1) % 3], face.corners[i]);
-                assert_eq!(across.adjacent[j], f);
+                assert_eq!(usize::from(across.adjacent[j]), f);
             }
-            assert!(p.vertices.iter().all(|v| p.side(f, v.w) >= 0.0));
+            assert!(p.vertices.iter().all(|v| p.side(face, v.w) >= 0.0));
+            assert_eq!(face.holds_origin, p.side(face, Vec3::zeros()) > 0.0);
         }
     }
 
@@ -233,7 +290,8 @@ mod tests {
                 f64::from((state >> 33) as u32 % 4)
             };
             let start = [vertex(1.0, 1.0, 1.0), vertex(2.0, 1.0, 1.0), vertex(1.0, 2.0, 1.0), vertex(1.0, 1.0, 2.0)];
-            let mut p = Polytope::tetrahedron(start).unwrap();
+            let mut p = Polytope::new(8.0);
+            assert!(p.start(start));
             validate(&p);
             for _ in 0..60 {
                 let v = vertex(next(), next(), next());
@@ -245,7 +303,7 @@ mod tests {
             // Most of the 4 x 4 x 4 lattice came up.
             let volume = |[a, b, c]: [Vec3; 3]| a.dot(&b.cross(&c)) / 6.0;
             let alive = p.faces.iter().filter(|f| f.alive);
-            let total: f64 = alive.map(|f| volume(f.corners.map(|c| p.vertices[c].w))).sum();
+            let total: f64 = alive.map(|f| volume(f.corners.map(|c| p.vertices[usize::from(c)].w))).sum();
             assert!(total <= 27.0 + 1e-12 && total > 15.0, "{total}");
         }
     }

@@ -1,49 +1,71 @@
 //! The point of a simplex nearest the origin: the step GJK repeats.
 //!
-//! By projection, feature by feature (the signed volumes of Montanari, Petrinic and Barbieri, ACM ToG 2017, give the
-//! idea): inside a face when all its sub-areas have the sign of the whole, else on the best of the edges that the
-//! origin is beyond. The sub-areas are taken from the projected origin, so that small faces far away lose no digits.
+//! The nearest point x of a set of vertices is known when it is seen: no vertex v has `v . x < x . x` (the condition of
+//! Karush, Kuhn and Tucker for min |x|^2). So the step guesses the feature that holds it (a face of which the origin's
+//! foot is inside, an edge, the newest vertex), nearly always rightly, and checks the guess by that condition. When no
+//! guess passes, which happens with simplices as flat as rounding, every feature is looked at and the nearest one taken.
+//!
+//! Sub-areas and lengths decide by their signs, as in the signed volumes of Montanari, Petrinic and Barbieri, ACM ToG 2017.
 
 use super::minkowski::Vertex;
 use crate::geometry::Vec3;
+use crate::geometry::tolerance::UNIT_ROUNDOFF;
+use crate::geometry::vector::{opposite, sum_of_sizes};
 
-/// One to three vertices and the weights that mix the nearest point from them: all positive, sum 1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Feature {
-    pub vertices: [Vertex; 3],
-    pub weights: [f64; 3],
-    pub len: usize,
+/// One to three vertices, and the point they hold that is nearest the origin.
+#[derive(Clone, Debug)]
+pub(super) struct Simplex {
+    vertices: [Vertex; 4],
+    /// They mix the nearest point: positive, sum 1.
+    weights: [f64; 3],
+    len: usize,
+    /// The nearest point; metres.
+    pub x: Vec3,
 }
 
-/// What the origin is to a simplex.
-pub(super) enum Nearest {
-    /// Outside, or on its boundary; the feature that holds the nearest point.
-    Outside(Feature),
-    /// Strictly inside a tetrahedron, by an exact test.
+/// What became of a simplex when a vertex was added.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Step {
+    /// It shrank to the feature that holds the nearest point.
+    Reduced,
+    /// It stayed as it was: with the vertex it comes no nearer.
+    NoNearer,
+    /// The origin is strictly inside of it and the vertex, which is now its fourth, by an exact test.
     Enclosed,
 }
 
-impl Feature {
+/// Where the nearest point is: on up to three of the vertices, in increasing order.
+#[derive(Clone, Copy)]
+struct Place {
+    slots: [usize; 3],
+    weights: [f64; 3],
+    len: usize,
+    x: Vec3,
+}
+
+impl Simplex {
     pub fn point(v: Vertex) -> Self {
-        Self { vertices: [v; 3], weights: [1.0, 0.0, 0.0], len: 1 }
+        Self { vertices: [v; 4], weights: [1.0, 0.0, 0.0], len: 1, x: v.w }
     }
 
-    /// The vertices in use.
+    /// The vertices of the feature that holds the nearest point.
     pub fn vertices(&self) -> &[Vertex] {
         &self.vertices[..self.len]
     }
 
-    fn mix(&self, of: impl Fn(&Vertex) -> Vec3) -> Vec3 {
-        let mut sum = of(&self.vertices[0]) * self.weights[0];
-        for i in 1..self.len {
-            sum += of(&self.vertices[i]) * self.weights[i];
-        }
-        sum
+    /// All four, once they enclose the origin.
+    pub fn enclosing(&self) -> [Vertex; 4] {
+        self.vertices
     }
 
-    /// The nearest point, and the points of A and B it is the difference of.
+    /// The nearest point with the point of A it comes from.
     pub fn nearest(&self) -> Vertex {
-        Vertex { w: self.mix(|v| v.w), on_a: self.mix(|v| v.on_a), on_b: self.mix(|v| v.on_b) }
+        let (v, weights) = (&self.vertices, self.weights);
+        let mut on_a = v[0].on_a * weights[0];
+        for i in 1..self.len {
+            on_a += v[i].on_a * weights[i];
+        }
+        Vertex { w: self.x, on_a, corners: v[0].corners }
     }
 
     /// Direction from the origin to the feature, perpendicular to it: of any length, zero when it cannot be told.
@@ -51,100 +73,198 @@ impl Feature {
     /// In exact arithmetic it is the nearest point x itself. In rounded arithmetic x is off by about u S, and turns by
     /// u S / |x|, which for near contacts is far more than the features' own directions are off: so a face gives its
     /// normal, an edge what is left of x after the edge's direction is taken out. The better of the two is returned.
-    pub fn direction(&self, x: Vec3) -> Vec3 {
+    #[inline]
+    pub fn direction(&self) -> Vec3 {
+        let [a, b, c, _] = &self.vertices;
         match self.len {
             3 => {
-                let [a, b, c] = self.vertices.map(|v| v.w);
-                let (ab, ac) = (b - a, c - a);
+                let (ab, ac) = (b.w - a.w, c.w - a.w);
                 let normal = ab.cross(&ac);
                 // Turn of the normal is about u S |e| / |ab x ac|, turn of x is about u S / |x|.
                 let edge = ab.norm_squared().max(ac.norm_squared());
-                if normal.norm_squared() <= x.norm_squared() * edge {
-                    return x;
+                if normal.norm_squared() <= self.x.norm_squared() * edge {
+                    return self.x;
                 }
-                if normal.dot(&a) < 0.0 { -normal } else { normal }
+                if normal.dot(&a.w) < 0.0 { opposite(normal) } else { normal }
             }
             2 => {
-                let along = self.vertices[1].w - self.vertices[0].w;
+                let along = b.w - a.w;
                 let square = along.norm_squared();
-                if square == 0.0 { x } else { x - along * (x.dot(&along) / square) }
+                if square == 0.0 { self.x } else { self.x - along * (self.x.dot(&along) / square) }
             }
-            _ => x,
+            _ => self.x,
         }
     }
-}
 
-/// The feature of a segment nearest the origin.
-pub(super) fn segment(a: Vertex, b: Vertex) -> Feature {
-    let ab = b.w - a.w;
-    let square = ab.norm_squared();
-    let t = -a.w.dot(&ab) / square;
-    // Beyond a, or a and b are one point (t is NaN).
-    if !(t > 0.0) {
-        return if square == 0.0 || a.w.norm_squared() <= b.w.norm_squared() {
-            Feature::point(a)
-        } else {
-            Feature::point(b)
+    /// Takes in a vertex and shrinks to what holds the nearest point. `extent`: no vertex is farther from the origin.
+    #[inline]
+    pub fn add(&mut self, vertex: Vertex, extent: f64) -> Step {
+        self.vertices[self.len] = vertex;
+        let count = self.len + 1;
+        let w = [self.vertices[0].w, self.vertices[1].w, self.vertices[2].w, self.vertices[3].w];
+        let guess = match count {
+            2 => Some(edge(&w, 0, 1).unwrap_or_else(|| corner(&w, 1))),
+            3 => Some(of_three(&w)),
+            _ => of_four(&w),
         };
-    }
-    if t >= 1.0 {
-        return Feature::point(b);
-    }
-    // Measured from the nearer end, which keeps small weights exact.
-    let s = b.w.dot(&ab) / square;
-    let (wa, wb) = if t < 0.5 { (1.0 - t, t) } else { (s, 1.0 - s) };
-    if !(wa > 0.0 && wb > 0.0) {
-        return if wa > wb { Feature::point(a) } else { Feature::point(b) };
-    }
-    Feature { vertices: [a, b, b], weights: [wa, wb, 0.0], len: 2 }
-}
-
-/// The feature of a triangle nearest the origin.
-pub(super) fn triangle(a: Vertex, b: Vertex, c: Vertex) -> Feature {
-    let normal = (b.w - a.w).cross(&(c.w - a.w));
-    let square = normal.norm_squared();
-    if square > 0.0 {
-        // The origin, dropped onto the plane; from the vertex nearest it, where the product rounds least.
-        let near = [a, b, c].into_iter().map(|v| v.w).min_by(|p, q| p.norm_squared().total_cmp(&q.norm_squared()));
-        let foot = normal * (near.unwrap_or(a.w).dot(&normal) / square);
-        // Areas in the coordinate plane the triangle is least foreshortened in.
-        let drop = normal.iamax();
-        let (i, j) = ((drop + 1) % 3, (drop + 2) % 3);
-        let [pa, pb, pc] = [a, b, c].map(|v| v.w - foot);
-        let area = |p: Vec3, q: Vec3| p[i] * q[j] - p[j] * q[i];
-        let sign = normal[drop].signum();
-        let [wa, wb, wc] = [area(pb, pc) * sign, area(pc, pa) * sign, area(pa, pb) * sign];
-        let sum = wa + wb + wc;
-        if wa > 0.0 && wb > 0.0 && wc > 0.0 {
-            return Feature { vertices: [a, b, c], weights: [wa / sum, wb / sum, wc / sum], len: 3 };
+        let slack = 8.0 * UNIT_ROUNDOFF * extent;
+        let place = match guess.filter(|place| is_nearest(place, &w[..count], slack)) {
+            Some(place) => place,
+            None => match exhaustive(&w[..count]) {
+                Some(place) => place,
+                None => return Step::Enclosed,
+            },
+        };
+        // Comparison order matters: a NaN is no progress.
+        if !(place.x.norm_squared() < self.x.norm_squared()) {
+            return Step::NoNearer;
         }
+        for i in 0..place.len {
+            // In increasing order, so that nothing is overwritten before it is moved.
+            if place.slots[i] != i {
+                self.vertices[i] = self.vertices[place.slots[i]];
+            }
+        }
+        (self.weights, self.len, self.x) = (place.weights, place.len, place.x);
+        Step::Reduced
     }
-    // On an edge. All three are looked at: in a needle the signs of the areas are not to be trusted.
-    nearer(segment(a, b), nearer(segment(b, c), segment(c, a)))
 }
 
-/// Where the origin is with respect to a tetrahedron.
-pub(super) fn tetrahedron(a: Vertex, b: Vertex, c: Vertex, d: Vertex) -> Nearest {
-    let whole = orientation(a.w, b.w, c.w, d.w);
-    let beyond = |p: Vertex, q: Vertex, r: Vertex, opposite: f64| {
-        // The origin and the fourth vertex on one side of the face: not beyond it. A flat tetrahedron has no inside.
-        let origin = orientation(p.w, q.w, r.w, Vec3::zeros());
-        opposite == 0.0 || origin == 0.0 || (origin > 0.0) != (opposite > 0.0)
+/// The point of a triangle nearest the origin, with the point of A it comes from. `extent` as for [`Simplex::add`].
+pub(super) fn nearest_of_triangle(a: Vertex, b: Vertex, c: Vertex, extent: f64) -> Vertex {
+    let mut simplex = Simplex::point(a);
+    simplex.vertices[1] = b;
+    simplex.len = 2;
+    simplex.x = Vec3::repeat(f64::INFINITY); // Any point is nearer.
+    simplex.add(c, extent);
+    simplex.nearest()
+}
+
+/// Whether no vertex lies before the plane through x across x, within rounding.
+#[inline(always)]
+fn is_nearest(place: &Place, w: &[Vec3], slack: f64) -> bool {
+    let x = place.x;
+    let least = x.norm_squared() - slack * sum_of_sizes(x);
+    w.iter().all(|v| v.dot(&x) >= least)
+}
+
+#[inline]
+fn corner(w: &[Vec3; 4], i: usize) -> Place {
+    Place { slots: [i; 3], weights: [1.0, 0.0, 0.0], len: 1, x: w[i] }
+}
+
+/// The nearest point of an edge when it is strictly between the ends.
+#[inline(always)]
+fn edge(w: &[Vec3; 4], i: usize, j: usize) -> Option<Place> {
+    let (a, b) = (w[i], w[j]);
+    let along = b - a;
+    // How far the foot is from either end: each is exact to rounding where it is small.
+    let (from_a, from_b) = (-a.dot(&along), b.dot(&along));
+    if !(from_a > 0.0 && from_b > 0.0) {
+        return None;
+    }
+    let whole = from_a + from_b;
+    let (of_a, of_b) = (from_b / whole, from_a / whole);
+    Some(Place { slots: [i, j, j], weights: [of_a, of_b, 0.0], len: 2, x: a * of_a + b * of_b })
+}
+
+/// The nearest point of a face when it is strictly inside.
+///
+/// The weight of a corner is the area of the triangle that the others make with the origin's foot, over the whole: with n
+/// the product of two edges, `n . ((a - c) x -c)` for b. Edges from one corner keep the error at u |e| |c|, so that
+/// small faces lose few digits.
+#[inline(always)]
+fn face(w: &[Vec3; 4], i: usize, j: usize, k: usize) -> Option<Place> {
+    let (a, b, c) = (w[i], w[j], w[k]);
+    let (ca, cb) = (a - c, b - c);
+    let normal = ca.cross(&cb);
+    let whole = normal.norm_squared();
+    let of_a = normal.dot(&cb.cross(&c));
+    let of_b = normal.dot(&c.cross(&ca));
+    let of_c = whole - of_a - of_b;
+    // Comparison order matters: a face without area has weights that are not numbers.
+    if !((of_a > 0.0) & (of_b > 0.0) & (of_c > 0.0)) {
+        return None;
+    }
+    let share = 1.0 / whole;
+    let (of_a, of_b) = (of_a * share, of_b * share);
+    let of_c = 1.0 - of_a - of_b;
+    Some(Place { slots: [i, j, k], weights: [of_a, of_b, of_c], len: 3, x: c + ca * of_a + cb * of_b })
+}
+
+/// A guess for two old vertices and a new one: the feature has the new one in it.
+#[inline]
+fn of_three(w: &[Vec3; 4]) -> Place {
+    face(w, 0, 1, 2).or_else(|| nearer(edge(w, 0, 2), edge(w, 1, 2))).unwrap_or_else(|| corner(w, 2))
+}
+
+/// The nearer of two places.
+#[inline]
+fn nearer(one: Option<Place>, other: Option<Place>) -> Option<Place> {
+    match (one, other) {
+        (Some(p), Some(q)) => Some(if p.x.norm_squared() <= q.x.norm_squared() { p } else { q }),
+        (one, other) => one.or(other),
+    }
+}
+
+/// A guess for an old face and a new vertex: on one of the faces at the new vertex that the origin is beyond; none when it
+/// is beyond none of them.
+#[inline]
+fn of_four(w: &[Vec3; 4]) -> Option<Place> {
+    let [a, b, c, d] = *w;
+    let whole = (a - d).dot(&(b - d).cross(&(c - d)));
+    // Volumes with the origin in the place of the third old vertex have the sign of `whole` reversed when it is inside.
+    let is_beyond = |p: Vec3, q: Vec3| !(d.dot(&p.cross(&q)) * whole < 0.0);
+    let (of_ab, of_bc, of_ca) = (is_beyond(a, b), is_beyond(b, c), is_beyond(c, a));
+    if !(of_ab || of_bc || of_ca) {
+        return None;
+    }
+    let mut best = if of_ab { face(w, 0, 1, 3) } else { None };
+    if of_bc {
+        best = nearer(best, face(w, 1, 2, 3));
+    }
+    if of_ca {
+        best = nearer(best, face(w, 0, 2, 3));
+    }
+    let edges = || nearer(nearer(edge(w, 0, 3), edge(w, 1, 3)), edge(w, 2, 3));
+    Some(best.or_else(edges).unwrap_or_else(|| corner(w, 3)))
+}
+
+/// The nearest of all features; none when four vertices strictly enclose the origin, by an exact test.
+#[cold]
+fn exhaustive(vertices: &[Vec3]) -> Option<Place> {
+    let mut w = [vertices[0]; 4];
+    w[..vertices.len()].copy_from_slice(vertices);
+    let last = vertices.len();
+    if last == 4 && is_enclosed(&w) {
+        return None;
+    }
+    let mut best = corner(&w, 0);
+    let mut offer = |place: Option<Place>| {
+        if let Some(place) = place
+            && place.x.norm_squared() < best.x.norm_squared()
+        {
+            best = place;
+        }
     };
-    // Signs of the four faces' opposite vertices, by swapping rows of the same determinant.
-    let faces = [(a, b, c, whole), (a, d, b, whole), (a, c, d, whole), (b, d, c, whole)];
-    let mut best: Option<Feature> = None;
-    for (p, q, r, opposite) in faces {
-        if beyond(p, q, r, opposite) {
-            let feature = triangle(p, q, r);
-            best = Some(best.map_or(feature, |found| nearer(found, feature)));
+    for i in 0..last {
+        offer(Some(corner(&w, i)));
+        for j in i + 1..last {
+            offer(edge(&w, i, j));
+            for k in j + 1..last {
+                offer(face(&w, i, j, k));
+            }
         }
     }
-    best.map_or(Nearest::Enclosed, Nearest::Outside)
+    Some(best)
 }
 
-fn nearer(one: Feature, other: Feature) -> Feature {
-    if one.nearest().w.norm_squared() <= other.nearest().w.norm_squared() { one } else { other }
+/// Whether the origin is strictly inside of the tetrahedron. Exact.
+fn is_enclosed(&[a, b, c, d]: &[Vec3; 4]) -> bool {
+    let origin = Vec3::zeros();
+    let whole = orientation(a, b, c, d);
+    let same_side = |p, q, r| orientation(p, q, r, origin) * whole.signum() > 0.0;
+    whole != 0.0 && same_side(a, b, c) && same_side(a, d, b) && same_side(a, c, d) && same_side(b, d, c)
 }
 
 /// Six times the volume of the tetrahedron (a, b, c, d), exactly of the right sign: positive when d is below the plane
@@ -160,20 +280,27 @@ mod tests {
 
     fn vertex(x: f64, y: f64, z: f64) -> Vertex {
         let w = Vec3::new(x, y, z);
-        Vertex { w, on_a: w, on_b: Vec3::zeros() }
+        Vertex { w, on_a: w, corners: [0; 2] }
+    }
+
+    fn of(vertices: &[Vertex]) -> Option<Simplex> {
+        let mut simplex = Simplex::point(vertices[0]);
+        simplex.vertices[..vertices.len()].copy_from_slice(vertices);
+        simplex.len = vertices.len() - 1;
+        simplex.x = Vec3::repeat(f64::INFINITY);
+        (simplex.add(vertices[vertices.len() - 1], 4.0) == Step::Reduced).then_some(simplex)
     }
 
     #[test]
     fn closest_features_of_a_triangle() {
-        let (a, b, c) = (vertex(-1.0, -1.0, 1.0), vertex(2.0, -1.0, 1.0), vertex(-1.0, 2.0, 1.0));
-        let face = triangle(a, b, c);
+        let face = of(&[vertex(-1.0, -1.0, 1.0), vertex(2.0, -1.0, 1.0), vertex(-1.0, 2.0, 1.0)]).unwrap();
         assert_eq!(face.len, 3);
-        assert!((face.nearest().w - Vec3::z()).norm() < 1e-15);
-        let edge = triangle(vertex(1.0, -1.0, 0.0), vertex(1.0, 1.0, 0.0), vertex(3.0, 0.0, 0.0));
+        assert!((face.x - Vec3::z()).norm() < 1e-15 && (face.nearest().on_a - Vec3::z()).norm() < 1e-15);
+        let edge = of(&[vertex(1.0, -1.0, 0.0), vertex(1.0, 1.0, 0.0), vertex(3.0, 0.0, 0.0)]).unwrap();
         assert_eq!(edge.len, 2);
-        assert!((edge.nearest().w - Vec3::x()).norm() < 1e-15);
-        let corner = triangle(vertex(1.0, 1.0, 0.0), vertex(2.0, 1.5, 0.0), vertex(1.5, 2.0, 0.0));
-        assert_eq!((corner.len, corner.nearest().w), (1, Vec3::new(1.0, 1.0, 0.0)));
+        assert!((edge.x - Vec3::x()).norm() < 1e-15);
+        let corner = of(&[vertex(1.0, 1.0, 0.0), vertex(2.0, 1.5, 0.0), vertex(1.5, 2.0, 0.0)]).unwrap();
+        assert_eq!((corner.len, corner.x), (1, Vec3::new(1.0, 1.0, 0.0)));
     }
 
     #[test]
@@ -182,7 +309,7 @@ mod tests {
             [(0.0, 0.0, -1.0), (3.0, 0.0, 0.5), (-2.0, 2.0, 0.5), (-2.0, -2.0, 0.5)]
                 .map(|(x, y, z)| vertex(x, y, z + lift))
         };
-        let enclosed = |[a, b, c, d]: [Vertex; 4]| matches!(tetrahedron(a, b, c, d), Nearest::Enclosed);
+        let enclosed = |vertices: [Vertex; 4]| of(&vertices).is_none();
         let [a, b, c, d] = corners(0.0);
         assert!(enclosed([a, b, c, d]) && enclosed([b, a, c, d]), "either orientation");
         assert!(!enclosed(corners(1.0)), "the origin is on a vertex");
@@ -193,9 +320,32 @@ mod tests {
     #[test]
     fn coinciding_and_collinear_vertices_are_no_trouble() {
         let p = vertex(1.0, 2.0, 2.0);
-        assert_eq!(segment(p, p).len, 1);
-        assert_eq!(triangle(p, p, p).len, 1);
-        let line = triangle(vertex(1.0, -1.0, 0.0), vertex(1.0, 1.0, 0.0), vertex(1.0, 3.0, 0.0));
-        assert!((line.nearest().w - Vec3::x()).norm() < 1e-15);
+        assert_eq!(of(&[p, p]).unwrap().len, 1);
+        assert_eq!(of(&[p, p, p]).unwrap().len, 1);
+        let line = of(&[vertex(1.0, -1.0, 0.0), vertex(1.0, 1.0, 0.0), vertex(1.0, 3.0, 0.0)]).unwrap();
+        assert!((line.x - Vec3::x()).norm() < 1e-15);
+    }
+
+    /// Oracle: the least distance over all features, each by projection.
+    #[test]
+    fn guesses_agree_with_looking_at_every_feature() {
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let mut enclosed = 0;
+        for round in 0..4000 {
+            let count = 2 + round % 3;
+            let lift = random();
+            let vertices: Vec<Vertex> = (0..count).map(|_| vertex(random(), random(), random() + lift)).collect();
+            let w: Vec<Vec3> = vertices.iter().map(|v| v.w).collect();
+            match (of(&vertices), exhaustive(&w)) {
+                (Some(found), Some(place)) => assert!((found.x - place.x).norm() < 1e-12, "{vertices:?}"),
+                (None, None) => enclosed += 1,
+                (found, place) => panic!("{found:?}, {:?}", place.map(|place| place.x)),
+            }
+        }
+        assert!(enclosed > 50, "{enclosed}");
     }
 }

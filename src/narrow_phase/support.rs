@@ -1,20 +1,47 @@
 //! Support functions: the point of a core that lies farthest in a direction.
 
+use crate::geometry::vector::greatest_size;
 use crate::geometry::{Aabb, Core, Vec3, length};
 
 /// A point of the convex, bounded core where `direction . x` is greatest, in the core's frame. Among equals the first.
 ///
 /// The direction need not be of unit length; a zero one gets any point. For round cores the value `direction . x` is
-/// within a few units in the last place of the true maximum, times the size of the core.
+/// within a few units in the last place of the true maximum, times the size of the core; for others within six.
 ///
 /// # Panics
 /// For cores that are not convex and bounded: callers have taken those apart ([`is_convex`]).
 pub(super) fn support(core: &Core, direction: Vec3) -> Vec3 {
+    farthest(core, direction, 0).0
+}
+
+/// The same, and which corner of the core it is (0 for a core without corners). `hint`: the corner found last, or 0.
+#[inline]
+pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
     let d = direction;
     match core {
-        Core::Point => Vec3::zeros(),
-        Core::Cuboid { half_extents } => half_extents.zip_map(&d, f64::copysign),
-        Core::AxialSegment { half_length } => Vec3::new(0.0, 0.0, half_length.copysign(d.z)),
+        Core::Cuboid { half_extents } => {
+            let corner = u32::from(d.x < 0.0) | u32::from(d.y < 0.0) << 1 | u32::from(d.z < 0.0) << 2;
+            let h = half_extents;
+            (Vec3::new(h.x.copysign(d.x), h.y.copysign(d.y), h.z.copysign(d.z)), corner)
+        }
+        Core::Convex(hull) => {
+            let corner = hull.farthest(d, hint);
+            (hull.points()[corner as usize], corner)
+        }
+        Core::Triangle(corners) => first_farthest(corners, d),
+        Core::Point => (Vec3::zeros(), 0),
+        Core::AxialSegment { half_length } => (Vec3::new(0.0, 0.0, half_length.copysign(d.z)), u32::from(d.z < 0.0)),
+        Core::Segment(ends) => first_farthest(ends, d),
+        Core::Cylinder { .. } | Core::Cone { .. } | Core::Ellipsoid { .. } => (round(core, d), 0),
+        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => {
+            unreachable!("only convex, bounded cores have a support function")
+        }
+    }
+}
+
+/// The support point of a cylinder, a cone or an ellipsoid.
+fn round(core: &Core, d: Vec3) -> Vec3 {
+    match core {
         Core::Cylinder { radius, half_length } => rim(*radius, half_length.copysign(d.z), d),
         Core::Cone { radius, half_length } => {
             // Apex or rim: the apex wins where its value, h d_z, is not below the rim's, r |d_xy| - h d_z.
@@ -30,12 +57,16 @@ pub(super) fn support(core: &Core, direction: Vec3) -> Vec3 {
                 None => Vec3::zeros(), // Flat across the direction: the centre is as far as any point.
             }
         }
-        Core::Convex(hull) => hull.support(d),
-        Core::Triangle(corners) => farthest(corners, d),
-        Core::Segment(ends) => farthest(ends, d),
-        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => {
-            unreachable!("only convex, bounded cores have a support function")
-        }
+        Core::Point
+        | Core::Cuboid { .. }
+        | Core::AxialSegment { .. }
+        | Core::Convex(_)
+        | Core::Triangle(_)
+        | Core::Segment(_)
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_) => unreachable!("not round"),
     }
 }
 
@@ -66,7 +97,7 @@ pub(super) fn radius(core: &Core) -> f64 {
         Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => {
             libm::hypot(*radius, *half_length)
         }
-        Core::Ellipsoid { radii } => radii.amax(),
+        Core::Ellipsoid { radii } => greatest_size(*radii),
         Core::Convex(hull) => hull.radius(),
         Core::Triangle(corners) => farthest(corners),
         Core::Segment(ends) => farthest(ends),
@@ -85,25 +116,47 @@ fn rim(radius: f64, height: f64, d: Vec3) -> Vec3 {
 }
 
 /// `v / |v|`, also where squares would underflow; none for zero.
+#[inline]
 pub(super) fn unit(v: Vec3) -> Option<Vec3> {
     let square = v.norm_squared();
-    if square > 1e-280 && square < 1e280 {
-        return Some(v / square.sqrt());
-    }
-    let largest = v.amax();
+    if square > 1e-280 && square < 1e280 { Some(v / square.sqrt()) } else { extreme_unit(v) }
+}
+
+#[cold]
+fn extreme_unit(v: Vec3) -> Option<Vec3> {
+    let largest = greatest_size(v);
     (largest > 0.0).then(|| (v / largest).normalize())
 }
 
-fn farthest(points: &[Vec3], d: Vec3) -> Vec3 {
-    let mut best = points[0];
-    let mut value = d.dot(&best);
-    for p in &points[1..] {
+fn first_farthest(points: &[Vec3], d: Vec3) -> (Vec3, u32) {
+    let mut best = 0;
+    let mut value = d.dot(&points[0]);
+    for (i, p) in points.iter().enumerate().skip(1) {
         let v = d.dot(p);
         if v > value {
-            (best, value) = (*p, v);
+            (best, value) = (i, v);
         }
     }
-    best
+    (points[best], best as u32)
+}
+
+/// Middle of the core's bounds.
+pub(super) fn center(core: &Core) -> Vec3 {
+    match core {
+        Core::Convex(hull) => hull.bounds().center(),
+        Core::Triangle([a, b, c]) => (a + b + c) / 3.0,
+        Core::Segment([a, b]) => (a + b) / 2.0,
+        Core::Point
+        | Core::Cuboid { .. }
+        | Core::AxialSegment { .. }
+        | Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_) => Vec3::zeros(),
+    }
 }
 
 #[cfg(test)]

@@ -65,6 +65,7 @@ pub const KERNEL: &[&str] = &[GEOMETRY, "limits", "narrow_phase", "broad_phase",
 /// Who may name which crate of `Cargo.toml`. A new dependency needs a line here before it builds into the house.
 pub const CRATES: &[(&str, &[&str])] = &[
     ("arc-swap", &["service"]),
+    ("arrayvec", &[GEOMETRY, "narrow_phase"]),
     ("base64", &[GEOMETRY]),
     ("clap", &["app", "cli", "main"]),
     ("indicatif", &["cli"]),
@@ -72,6 +73,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("nalgebra", KERNEL),
     ("parry3d-f64", &[GEOMETRY]),
     ("prost", &["transports"]),
+    ("pulp", &[GEOMETRY]),
     ("rayon", &["service"]),
     ("robust", &[GEOMETRY, "narrow_phase"]),
     ("roxmltree", &[GEOMETRY, "robot"]),

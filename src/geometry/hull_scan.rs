@@ -1,0 +1,92 @@
+//! The farthest of some points by looking at all of them, several at a time.
+//!
+//! Coordinates are kept apart (structure of arrays) in blocks of eight: an AVX-512 register, two of AVX2, four of NEON or
+//! SSE2. Which of them the processor has is found out at run time by the `pulp` crate; the same expression is evaluated for every point whatever the registers are, so the answer is the same
+//! bytes everywhere.
+
+use pulp::Arch;
+
+use super::Vec3;
+
+/// Points that are looked at together.
+const LANES: usize = 8;
+
+/// From this many points on the widest registers pay for the jump to the code that uses them.
+const DISPATCHED: usize = 24;
+
+/// Points, coordinate by coordinate, filled up with copies of the first to whole blocks.
+#[derive(Clone, Debug)]
+pub(super) struct Scan {
+    blocks: Vec<[[f64; LANES]; 3]>,
+    arch: Arch,
+}
+
+impl Scan {
+    pub fn new(points: &[Vec3]) -> Self {
+        let block = |chunk: &[Vec3]| {
+            [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
+        };
+        Self { blocks: points.chunks(LANES).map(block).collect(), arch: Arch::new() }
+    }
+
+    /// Index of the point where `direction . x` is greatest; among equals the first.
+    pub fn farthest(&self, direction: Vec3) -> usize {
+        if self.blocks.len() * LANES < DISPATCHED {
+            farthest(&self.blocks, direction)
+        } else {
+            self.arch.dispatch(|| farthest(&self.blocks, direction))
+        }
+    }
+}
+
+/// First the greatest value, lane by lane and without branches; then the first point that has it, found by evaluating the
+/// same expression again.
+#[inline(always)]
+fn farthest(blocks: &[[[f64; LANES]; 3]], direction: Vec3) -> usize {
+    let mut greatest = [f64::NEG_INFINITY; LANES];
+    for block in blocks {
+        let values = products(block, direction);
+        for lane in 0..LANES {
+            greatest[lane] = if values[lane] > greatest[lane] { values[lane] } else { greatest[lane] };
+        }
+    }
+    let greatest = greatest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    for (b, block) in blocks.iter().enumerate() {
+        let values = products(block, direction);
+        let mut equals = 0u32;
+        for lane in 0..LANES {
+            equals |= u32::from(values[lane] == greatest) << lane;
+        }
+        if equals != 0 {
+            return b * LANES + equals.trailing_zeros() as usize;
+        }
+    }
+    0 // The direction has a component that is not a number.
+}
+
+#[inline(always)]
+fn products(block: &[[f64; LANES]; 3], d: Vec3) -> [f64; LANES] {
+    std::array::from_fn(|lane| block[0][lane] * d.x + block[1][lane] * d.y + block[2][lane] * d.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_set_of_registers_finds_the_same_point() {
+        let coordinate = |i: usize, k: usize| ((i * 73 + k * 31) % 101) as f64 / 7.0;
+        let points: Vec<Vec3> =
+            (0..45).map(|i| Vec3::new(coordinate(i, 1), coordinate(i, 2), coordinate(i, 3))).collect();
+        let scan = Scan::new(&points);
+        for k in 0..200 {
+            let d = Vec3::new(libm::sin(k as f64), libm::cos(1.3 * k as f64), libm::sin(0.7 * k as f64 + 1.0));
+            let plain = farthest(&scan.blocks, d);
+            let value = |i: usize| points[i].x * d.x + points[i].y * d.y + points[i].z * d.z;
+            assert_eq!((0..45).find(|&i| (0..45).all(|j| value(j) <= value(i))), Some(plain));
+            for dispatched in [scan.farthest(d), scan.arch.dispatch(|| farthest(&scan.blocks, d))] {
+                assert_eq!(dispatched, plain);
+            }
+        }
+    }
+}
