@@ -34,14 +34,14 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     // Below the normal numbers roundings are absolute. A pair of nothing but zeros has none.
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
-    let difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
+    let mut difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
-    let found = solve(&difference, &target, &mut cost);
+    let found = solve(&mut difference, &target, &mut cost);
     place(&found, a, &target, &difference, cost)
 }
 
-fn solve(difference: &Difference, target: &Target, cost: &mut Cost) -> Epa {
+fn solve(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
     let found = gjk(difference, target, cost);
     let stopped = |termination| known(&found, termination);
     // Two errors, one from each end of the bracket, are as near as they can come.

@@ -43,7 +43,7 @@ pub(super) struct Epa {
 
 /// Narrows `known` (valid bounds that GJK found, with the nearest point it found), starting from some vertices of C.
 #[inline(never)]
-pub(super) fn epa(difference: &Difference, seeds: &[Vertex], known: Epa, target: &Target, cost: &mut Cost) -> Epa {
+pub(super) fn epa(difference: &mut Difference, seeds: &[Vertex], known: Epa, target: &Target, cost: &mut Cost) -> Epa {
     let mut best = known;
     let mut polytope = Polytope::new(difference.extent + 2.0 * difference.error);
     let enclosing = <[Vertex; 4]>::try_from(seeds).ok().filter(|seeds| is_solid(seeds, difference.extent));
@@ -83,7 +83,7 @@ fn is_solid(&[a, b, c, d]: &[Vertex; 4], extent: f64) -> bool {
     (a.w - d.w).dot(&(b.w - d.w).cross(&(c.w - d.w))).abs() > 1e-6 * extent * extent * extent
 }
 
-fn expand(difference: &Difference, polytope: &mut Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
+fn expand(difference: &mut Difference, polytope: &mut Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
     let error = difference.error;
     best.termination = Termination::IterationLimit;
     // Of faces that cannot be pushed out further.
@@ -167,7 +167,7 @@ enum Start {
 }
 
 /// Four vertices with volume from `pool`, to which support points are added as far as they are needed.
-fn starting_vertices(difference: &Difference, pool: &mut Pool, cost: &mut Cost) -> Start {
+fn starting_vertices(difference: &mut Difference, pool: &mut Pool, cost: &mut Cost) -> Start {
     // Thinner than the error of its own vertices is without volume.
     let thin = 4.0 * difference.error;
     let mut ask = |directions: &[Vec3], pool: &mut Pool| {

@@ -58,7 +58,7 @@ pub(super) enum End {
 
 /// Runs GJK on `difference`, starting between the centres.
 #[inline]
-pub(super) fn gjk(difference: &Difference, target: &Target, cost: &mut Cost) -> Gjk {
+pub(super) fn gjk(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
     let direction = unit(difference.centers()).unwrap_or_else(Vec3::x);
     let first = difference.lowest(direction);

@@ -3,8 +3,6 @@
 //! A and B meet where C holds the origin, and the signed distance of A and B is that of the origin to C. Everything
 //! is in A's frame, so that nothing depends on where the pair is in the world.
 
-use std::cell::Cell;
-
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Vec3, length};
@@ -34,7 +32,7 @@ pub(super) struct Difference<'a> {
     /// `docs/derivations/bracket.md`.
     pub error: f64,
     /// The corners found last, where a search along edges may start.
-    hints: Cell<[u32; 2]>,
+    hints: [u32; 2],
 }
 
 impl<'a> Difference<'a> {
@@ -42,16 +40,16 @@ impl<'a> Difference<'a> {
     pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, placement_error: f64) -> Self {
         let extent = radius(a) + radius(b) + length(b_in_a.translation);
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
-        Self { a, b, b_in_a, extent, error, hints: Cell::new([0; 2]) }
+        Self { a, b, b_in_a, extent, error, hints: [0; 2] }
     }
 
     /// The vertex where `direction . c` is least.
     #[inline]
-    pub fn lowest(&self, direction: Vec3) -> Vertex {
-        let [hint_a, hint_b] = self.hints.get();
+    pub fn lowest(&mut self, direction: Vec3) -> Vertex {
+        let [hint_a, hint_b] = self.hints;
         let (on_a, corner_a) = farthest(self.a, opposite(direction), hint_a);
         let (on_b, corner_b) = farthest(self.b, self.b_in_a.direction_into(direction), hint_b);
-        self.hints.set([corner_a, corner_b]);
+        self.hints = [corner_a, corner_b];
         Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [corner_a, corner_b] }
     }
 
