@@ -1,0 +1,125 @@
+//! What makes a program a contender: it reads commands, makes passes over pairs, and times each pair (see `README.md`).
+
+use std::arch::x86_64::{_mm_lfence, _rdtsc};
+use std::hint::black_box;
+use std::io::{self, BufRead, Write};
+use std::time::{Duration, Instant};
+
+use crate::pairs::{PairSet, Pairs};
+
+/// What a contender says of one pair: a signed distance, or 1 and 0 for touching or not; NaN when it has none.
+pub struct Answer {
+    pub value: f64,
+    /// The proved interval, where there is one.
+    pub bracket: Option<(f64, f64)>,
+}
+
+impl From<f64> for Answer {
+    fn from(value: f64) -> Self {
+        Self { value, bracket: None }
+    }
+}
+
+/// A library under comparison.
+pub trait Contender {
+    /// The ways in which it can be asked this of the pairs of a set; none when it cannot.
+    fn configs(&self, set: &PairSet, operation: &str) -> Vec<String>;
+
+    /// Runs `pass` with whatever answers the question.
+    fn ask(&mut self, set: &PairSet, operation: &str, config: &str, pass: &mut Pass);
+}
+
+/// Time stamp, with everything before it done and nothing after it begun.
+#[inline(always)]
+fn tick() -> u64 {
+    // SAFETY: every x86-64 processor has both instructions, and neither touches memory.
+    unsafe {
+        _mm_lfence();
+        let now = _rdtsc();
+        _mm_lfence();
+        now
+    }
+}
+
+/// What two stamps with nothing between them differ by, and the step that stamps grow by (26 ticks on some machines).
+struct Timer {
+    cost: f64,
+    step: f64,
+}
+
+impl Timer {
+    fn new() -> Self {
+        let between = || {
+            let start = tick();
+            tick() - start
+        };
+        let mut costs: Vec<u64> = (0..20_001).map(|_| between()).collect();
+        costs.sort_unstable();
+        costs.truncate(costs.len() * 9 / 10); // the others were interrupted
+        // The mean, for it resolves what lies between two steps.
+        let cost = costs.iter().sum::<u64>() as f64 / costs.len() as f64;
+        let second = costs.iter().find(|&&cost| cost > costs[0]);
+        Self { cost, step: second.map_or(costs[0], |second| second - costs[0]) as f64 }
+    }
+}
+
+fn ticks_per_nanosecond() -> f64 {
+    let (began, first) = (Instant::now(), tick());
+    while began.elapsed() < Duration::from_millis(100) {}
+    let elapsed = began.elapsed();
+    (tick() - first) as f64 / elapsed.as_nanos() as f64
+}
+
+/// One visit to each of the first `count` pairs of a set; goes out as four numbers a pair: ticks, answer, lower, upper.
+pub struct Pass {
+    count: usize,
+    timer_cost: f64,
+    bytes: Vec<u8>,
+}
+
+impl Pass {
+    /// `ask(i)` answers about pair i of the set; the clock runs while it does. `read` turns what it returned into numbers.
+    #[inline(always)]
+    pub fn run<T>(&mut self, mut ask: impl FnMut(usize) -> T, read: impl Fn(T) -> Answer) {
+        self.bytes.reserve(32 * self.count);
+        for i in 0..self.count {
+            let start = tick();
+            let answer = black_box(ask(i));
+            let end = tick();
+            let Answer { value, bracket } = read(answer);
+            let (lower, upper) = bracket.unwrap_or((f64::NAN, f64::NAN));
+            for number in [(end - start) as f64 - self.timer_cost, value, lower, upper] {
+                self.bytes.extend_from_slice(&number.to_le_bytes());
+            }
+        }
+    }
+}
+
+/// Answers the commands on standard input until it ends.
+///
+/// # Errors
+/// An input that is no command, or an output that is closed.
+pub fn serve(contender: &mut impl Contender, pairs: &Pairs) -> io::Result<()> {
+    let timer = Timer::new();
+    let mut out = io::stdout().lock();
+    writeln!(out, "ready {:.9} {}", ticks_per_nanosecond(), timer.step)?;
+    out.flush()?;
+    for line in io::stdin().lock().lines() {
+        let line = line?;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let unknown = || io::Error::other(format!("no such command: {line}"));
+        let set = words.get(1).and_then(|name| pairs.sets.iter().find(|set| set.name == *name)).ok_or_else(unknown)?;
+        match words.as_slice() {
+            ["configs", _, operation] => writeln!(out, "{}", contender.configs(set, operation).join(" "))?,
+            ["pass", _, operation, config, count] => {
+                let count = count.parse::<usize>().map_err(|_| unknown())?.min(set.count);
+                let mut pass = Pass { count, timer_cost: timer.cost, bytes: Vec::new() };
+                contender.ask(set, operation, config, &mut pass);
+                out.write_all(&pass.bytes)?;
+            }
+            _ => return Err(unknown()),
+        }
+        out.flush()?;
+    }
+    Ok(())
+}
