@@ -12,7 +12,7 @@ use super::case::{self, Case};
 use super::exit_code::Failed;
 use super::words;
 use crate::geometry::Vec3;
-use crate::narrow_phase::{self, Accuracy, Goal, Separation};
+use crate::narrow_phase::{self, Accuracy, Depth, Goal, NoSeparation, Separation, Solver};
 use crate::query::Verdict;
 
 /// Flags of `clearance pairs`.
@@ -23,15 +23,51 @@ pub struct Pairs {
     /// Skip this many cases at the head of the input.
     #[arg(default_value_t = 0)]
     pub start: usize,
-    /// Width of the bracket at which the work on a pair ends, relative to the distance.
+    /// Width of the bracket at which the work on a pair ends, relative to the distance; 1e-9 when absent, and with 0 it ends
+    /// where rounding ends it.
     #[arg(long, value_name = "REL", value_parser = not_negative)]
     pub tolerance: Option<f64>,
+    /// Width of the bracket at which the work on a pair ends, in metres; the wider of the two counts.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = not_negative)]
+    pub absolute_tolerance: f64,
+    /// How far the work on a pair goes.
+    #[arg(long, value_enum, default_value_t = Until::Penetration)]
+    pub depth: Until,
+    /// Who does it; a pair that the solver does not take is answered with the status `unsupported`.
+    #[arg(long, value_name = "NAME", default_value_t, value_parser = solver_named)]
+    pub solver: Solver,
     /// Microseconds after which the work on a pair ends with the bracket reached so far.
     #[arg(long, value_name = "N")]
     pub max_time_us: Option<u64>,
     /// Accepted like everywhere; the output is JSON lines with or without it.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Names of [`Depth`] on the command line.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
+pub enum Until {
+    /// Whether they touch.
+    Verdict,
+    /// The distance when apart; an overlap is only proved.
+    Distance,
+    /// The depth of an overlap too.
+    Penetration,
+}
+
+impl From<Until> for Depth {
+    fn from(until: Until) -> Self {
+        match until {
+            Until::Verdict => Self::Verdict,
+            Until::Distance => Self::Distance,
+            Until::Penetration => Self::Penetration,
+        }
+    }
+}
+
+fn solver_named(name: &str) -> Result<Solver, String> {
+    let names = || Solver::ALL.map(Solver::name).join(", ");
+    Solver::named(name).ok_or_else(|| format!("known are {}", names()))
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
@@ -91,6 +127,7 @@ struct Line {
 enum Outcome {
     Ok(Measured),
     Invalid { message: String },
+    Unsupported { message: String },
 }
 
 #[derive(Serialize)]
@@ -108,23 +145,25 @@ struct Measured {
 
 fn answer(line: &[u8], pairs: &Pairs) -> Line {
     let (id, case) = case::read_line(line);
-    let outcome = match case.and_then(|case| measure(&case, pairs)) {
-        Ok(measured) => Outcome::Ok(measured),
+    let outcome = match case.map(|case| measure(&case, pairs)) {
+        Ok(Ok(measured)) => Outcome::Ok(measured),
+        Ok(Err(NoSeparation::Unclaimed(unclaimed))) => Outcome::Unsupported { message: unclaimed.to_string() },
+        Ok(Err(unbounded @ NoSeparation::Unbounded { .. })) => Outcome::Invalid { message: unbounded.to_string() },
         Err(message) => Outcome::Invalid { message },
     };
     Line { id, outcome }
 }
 
-fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, String> {
+fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, NoSeparation> {
     let started = Instant::now();
     let budget = pairs.max_time_us.map(Duration::from_micros);
     let out_of_time = || budget.is_some_and(|budget| started.elapsed() >= budget);
     let whole = Goal::penetration();
     let relative = pairs.tolerance.unwrap_or(whole.accuracy.relative);
-    let goal = Goal { accuracy: Accuracy { relative, ..whole.accuracy }, stop: &out_of_time, ..whole };
+    let accuracy = Accuracy { relative, absolute: pairs.absolute_tolerance };
+    let goal = Goal { depth: pairs.depth.into(), accuracy, solver: pairs.solver, stop: &out_of_time, ..whole };
     let (at_a, at_b) = (case.pose_a.placement(), case.pose_b.placement());
-    let separation =
-        narrow_phase::separation(&case.a, &case.b, &at_a, &at_b, &goal).map_err(|error| error.to_string())?;
+    let separation = narrow_phase::separation(&case.a, &case.b, &at_a, &at_b, &goal)?;
     let micros = started.elapsed().as_secs_f64() * 1e6;
     Ok(written(&separation, micros))
 }
@@ -155,7 +194,17 @@ mod tests {
     const BALLS: &str = r#"{"id": "balls", "a": {"type": "sphere", "params": {"radius": 1}}, "pose_a": {"t": [0, 0, 0], "q": [1, 0, 0, 0]}, "b": {"type": "point"}, "pose_b": {"t": [0, 0, 3], "q": [1, 0, 0, 0]}}"#;
 
     fn lines(input: &str, start: usize) -> Vec<Value> {
-        let pairs = Pairs { file: None, start, tolerance: None, max_time_us: None, json: false };
+        answers(input, &["--", "-", &start.to_string()])
+    }
+
+    /// The input answered with these arguments; the file among them is not opened.
+    fn answers(input: &str, arguments: &[&str]) -> Vec<Value> {
+        #[derive(clap::Parser)]
+        struct Command {
+            #[command(flatten)]
+            pairs: Pairs,
+        }
+        let Command { pairs } = clap::Parser::parse_from([&["pairs"], arguments].concat());
         let mut output = Vec::new();
         answer_all(&pairs, "test", &mut input.as_bytes(), &mut output).unwrap();
         String::from_utf8(output).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
@@ -192,5 +241,33 @@ mod tests {
     #[test]
     fn start_skips_cases_not_lines() {
         assert_eq!(lines(&format!("\n{{\"id\": 1}}\n\n{BALLS}\n"), 1)[0]["id"], "balls");
+    }
+
+    #[test]
+    fn a_pair_that_the_solver_does_not_take_is_unsupported_and_says_why() {
+        let cone =
+            BALLS.replace(r#"{"type": "point"}"#, r#"{"type": "cone", "params": {"radius": 1, "half_length": 1}}"#);
+        let both = answers(&format!("{cone}\n{BALLS}"), &["--solver", "qp"]);
+        assert_eq!(both[0]["status"], "unsupported");
+        assert_eq!(both[0]["message"], "the solver qp does not take a sphere and a cone: a cone is no polytope");
+        assert_eq!(both[1]["status"], "ok");
+    }
+
+    #[test]
+    fn work_goes_as_far_as_was_asked() {
+        let overlapping = BALLS
+            .replace("[0, 0, 3]", "[0, 0, 0.25]")
+            .replace(r#"{"type": "point"}"#, r#"{"type": "box", "params": {"half_extents": [1, 2, 3]}}"#);
+        let depth = |arguments: &[&str]| {
+            let answer = &answers(&overlapping, arguments)[0];
+            assert_eq!(answer["verdict"], "COLLISION");
+            (answer["termination"].clone(), answer["upper"].as_f64().unwrap() - answer["lower"].as_f64().unwrap())
+        };
+        assert!(depth(&[]).1 < 1e-8);
+        for until in ["verdict", "distance"] {
+            let (termination, width) = depth(&["--depth", until]);
+            assert_eq!(termination, "DECIDED");
+            assert!(width > 1e-3, "{width}");
+        }
     }
 }

@@ -27,6 +27,15 @@ impl Target<'_> {
         Bracket { lower: lower - self.radii - slack(lower), upper: upper - self.radii + slack(upper) }
     }
 
+    /// Cores farther apart than this are far enough for what is asked, but for rounding; metres, of the scaled cores.
+    pub fn enough(&self) -> f64 {
+        let apart = match self.goal.depth {
+            Depth::Verdict => self.goal.margin.min(self.goal.cut_off),
+            Depth::Distance | Depth::Penetration => self.goal.cut_off,
+        };
+        (apart + self.radii) * self.scale
+    }
+
     #[inline]
     pub fn is_decided(&self, bracket: &Bracket) -> bool {
         self.goal.is_decided(bracket)

@@ -6,13 +6,15 @@ use super::bracketing::Target;
 use super::epa::{Epa, epa};
 use super::gjk::{End, Gjk, gjk};
 use super::goal::{Depth, Goal};
+use super::ladder;
 use super::minkowski::Difference;
+use super::momentum::Steering;
 use super::outcome::{Cost, Separation, Termination};
 use super::polytope::inner_ball;
 use super::support::radius;
 use crate::geometry::tolerance::UNSCALED_EXTENT;
 use crate::geometry::vector::opposite;
-use crate::geometry::{Core, Placement, length};
+use crate::geometry::{Core, Placement, Vec3, length};
 
 /// A convex, bounded core in its place, with the radius of the ball swept over it.
 #[derive(Clone, Copy)]
@@ -37,12 +39,21 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     let mut difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
-    let found = solve(&mut difference, &target, &mut cost);
+    let found = ladder::solve(&mut difference, &target, &mut cost);
     place(&found, a, &target, &difference, cost)
 }
 
-fn solve(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
-    let found = gjk(difference, target, cost);
+/// The distance by GJK, starting along `start`, a direction from the origin to the difference; where that ends without one,
+/// by EPA.
+#[inline]
+pub(super) fn by_gjk(
+    difference: &mut Difference,
+    start: Vec3,
+    steering: impl Steering,
+    target: &Target,
+    cost: &mut Cost,
+) -> Epa {
+    let found = gjk(difference, start, steering, target, cost);
     let stopped = |termination| known(&found, termination);
     // Two errors, one from each end of the bracket, are as near as they can come.
     let at_floor = found.upper - found.lower <= 4.0 * difference.error;

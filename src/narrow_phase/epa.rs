@@ -83,7 +83,13 @@ fn is_solid(&[a, b, c, d]: &[Vertex; 4], extent: f64) -> bool {
     (a.w - d.w).dot(&(b.w - d.w).cross(&(c.w - d.w))).abs() > 1e-6 * extent * extent * extent
 }
 
-fn expand(difference: &mut Difference, polytope: &mut Polytope, mut best: Epa, target: &Target, cost: &mut Cost) -> Epa {
+fn expand(
+    difference: &mut Difference,
+    polytope: &mut Polytope,
+    mut best: Epa,
+    target: &Target,
+    cost: &mut Cost,
+) -> Epa {
     let error = difference.error;
     best.termination = Termination::IterationLimit;
     // Of faces that cannot be pushed out further.

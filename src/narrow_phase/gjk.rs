@@ -15,6 +15,7 @@
 
 use super::bracketing::Target;
 use super::minkowski::Difference;
+use super::momentum::Steering;
 use super::outcome::Cost;
 use super::simplex::{Simplex, Step};
 use super::support::unit;
@@ -56,11 +57,17 @@ pub(super) enum End {
     OutOfTime,
 }
 
-/// Runs GJK on `difference`, starting between the centres.
+/// Runs GJK on `difference`, starting along `start`, a direction from the origin to it.
 #[inline]
-pub(super) fn gjk(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Gjk {
+pub(super) fn gjk(
+    difference: &mut Difference,
+    start: Vec3,
+    mut steering: impl Steering,
+    target: &Target,
+    cost: &mut Cost,
+) -> Gjk {
     let error = difference.error;
-    let direction = unit(difference.centers()).unwrap_or_else(Vec3::x);
+    let direction = unit(start).unwrap_or_else(Vec3::x);
     let first = difference.lowest(direction);
     cost.supports += 1;
     let lower = direction.dot(&first.w) - error;
@@ -70,16 +77,19 @@ pub(super) fn gjk(difference: &mut Difference, target: &Target, cost: &mut Cost)
         best.end = end;
         return best;
     }
+    let mut last = first.w;
     for _ in 0..MAX_ITERATIONS {
         if target.must_stop() {
             best.end = End::OutOfTime;
             break;
         }
-        let Some(direction) = unit(best.simplex.direction()) else {
+        let steered = steering.direction(best.simplex.x, last).and_then(unit);
+        let Some(direction) = steered.or_else(|| unit(best.simplex.direction())) else {
             best.end = End::Stalled; // The origin is on the feature.
             break;
         };
         let vertex = difference.lowest(direction);
+        last = vertex.w;
         cost.supports += 1;
         cost.gjk_iterations += 1;
         let value = direction.dot(&vertex.w) - error;
@@ -92,12 +102,12 @@ pub(super) fn gjk(difference: &mut Difference, target: &Target, cost: &mut Cost)
             best.end = end;
             break;
         }
-        if best.simplex.vertices().iter().any(|v| is_same(v.w, vertex.w)) {
-            best.end = End::Stalled;
-            break;
-        }
-        match best.simplex.add(vertex, difference.extent) {
+        let is_old = best.simplex.vertices().iter().any(|v| is_same(v.w, vertex.w));
+        let step = if is_old { Step::NoNearer } else { best.simplex.add(vertex, difference.extent) };
+        match step {
             Step::Reduced => best.upper = best.simplex.x.norm() + error,
+            // What a steered direction found was not what lies farthest against x: that is no reason to end.
+            Step::NoNearer if steering.gave_up() => (),
             Step::NoNearer => {
                 best.end = End::Stalled;
                 break;

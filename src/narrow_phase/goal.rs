@@ -3,6 +3,7 @@
 use crate::geometry::tolerance::DEFAULT_RELATIVE_TOLERANCE;
 
 use super::Bracket;
+use super::solver::Solver;
 
 /// How narrow a bracket has to be: `upper - lower <= max(absolute, relative * min(|lower|, |upper|))`, or as narrow
 /// as rounding lets it be.
@@ -48,6 +49,8 @@ pub struct Goal<'a> {
     pub depth: Depth,
     /// How narrow the bracket has to be where it has to be narrow.
     pub accuracy: Accuracy,
+    /// Who does the work.
+    pub solver: Solver,
     /// Apart but nearer than this is a verdict of its own; metres, not negative.
     pub margin: f64,
     /// Nothing more needs to be known of a pair proved farther apart than this; metres.
@@ -63,6 +66,7 @@ impl Goal<'_> {
         Self {
             depth: Depth::Penetration,
             accuracy: Accuracy::default(),
+            solver: Solver::Default,
             margin: 0.0,
             cut_off: f64::INFINITY,
             stop: &|| false,
@@ -106,6 +110,7 @@ impl std::fmt::Debug for Goal<'_> {
         f.debug_struct("Goal")
             .field("depth", &self.depth)
             .field("accuracy", &self.accuracy)
+            .field("solver", &self.solver)
             .field("margin", &self.margin)
             .field("cut_off", &self.cut_off)
             .finish_non_exhaustive()

@@ -22,9 +22,9 @@ pub(super) struct Vertex {
 
 /// The difference of two convex, bounded cores.
 pub(super) struct Difference<'a> {
-    a: &'a Core,
-    b: &'a Core,
-    b_in_a: Placement,
+    pub a: &'a Core,
+    pub b: &'a Core,
+    pub b_in_a: Placement,
     /// No vertex is farther than this from the origin, metres.
     pub extent: f64,
     /// E = 112 u S plus what the placement of the cores is off by, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the

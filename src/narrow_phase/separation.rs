@@ -4,18 +4,25 @@ use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
 use super::pieces::pieces;
+use super::solver::Unclaimed;
 use super::support::is_convex;
 use super::union;
 use crate::geometry::{Core, Mat3, Placement, Shape, Vec3};
 
-/// Two shapes without bounds, such as two half-spaces: their distance is not asked for.
+/// Why a pair gets no answer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a {a} and a {b} are both unbounded, so they have no signed distance")]
-pub struct UnboundedPair {
-    /// Kind of the first shape.
-    pub a: &'static str,
-    /// Kind of the second.
-    pub b: &'static str,
+pub enum NoSeparation {
+    /// Two shapes without bounds, such as two half-spaces: their distance is not asked for.
+    #[error("a {a} and a {b} are both unbounded, so they have no signed distance")]
+    Unbounded {
+        /// Kind of the first shape.
+        a: &'static str,
+        /// Kind of the second.
+        b: &'static str,
+    },
+    /// The solver that was asked for does not take such shapes.
+    #[error(transparent)]
+    Unclaimed(#[from] Unclaimed),
 }
 
 /// How far shape `a` is from shape `b`, both placed in one frame, as far as `goal` needs to know.
@@ -24,14 +31,15 @@ pub struct UnboundedPair {
 /// pair of pieces: in an overlap the deepest pair, not a translation that frees the whole.
 ///
 /// # Errors
-/// [`UnboundedPair`] when neither shape has bounds.
+/// [`NoSeparation`] when neither shape has bounds, or the goal's solver does not take one of them.
 pub fn separation(
     a: &Shape,
     b: &Shape,
     at_a: &Placement,
     at_b: &Placement,
     goal: &Goal,
-) -> Result<Separation, UnboundedPair> {
+) -> Result<Separation, NoSeparation> {
+    goal.solver.claims(a, b)?;
     if is_convex(a.core()) && is_convex(b.core()) {
         let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
         let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
@@ -41,7 +49,8 @@ pub fn separation(
     let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));
     let pieces_a = pieces(a, &own_frame, composed);
     let pieces_b = pieces(b, &Placement::relative(at_a, at_b), composed);
-    let found = union::separation(&pieces_a, &pieces_b, goal).ok_or(UnboundedPair { a: a.kind(), b: b.kind() })?;
+    let found =
+        union::separation(&pieces_a, &pieces_b, goal).ok_or(NoSeparation::Unbounded { a: a.kind(), b: b.kind() })?;
     let point_on_a = at_a.point(found.point_on_a);
     let normal = at_a.direction(found.normal);
     Ok(Separation { normal, point_on_a, point_on_b: point_on_a + normal * found.signed_distance, ..found })

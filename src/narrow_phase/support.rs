@@ -70,6 +70,28 @@ fn round(core: &Core, d: Vec3) -> Vec3 {
     }
 }
 
+/// The corners of a polytope, in the core's frame; none for cores that are not polytopes.
+pub(super) fn corners(core: &Core) -> Vec<Vec3> {
+    match core {
+        Core::Point => vec![Vec3::zeros()],
+        Core::Cuboid { half_extents } => {
+            let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            (0..8).map(|n| half_extents.component_mul(&Vec3::new(sign(n, 0), sign(n, 1), sign(n, 2)))).collect()
+        }
+        Core::AxialSegment { half_length } => [-half_length, *half_length].map(|z| Vec3::new(0.0, 0.0, z)).into(),
+        Core::Convex(hull) => hull.points().to_vec(),
+        Core::Triangle(corners) => corners.to_vec(),
+        Core::Segment(ends) => ends.to_vec(),
+        Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_) => Vec::new(),
+    }
+}
+
 /// Whether the core has a support function.
 pub(super) fn is_convex(core: &Core) -> bool {
     match core {

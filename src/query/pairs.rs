@@ -157,6 +157,9 @@ fn party(body: &Body) -> Party<'_> {
 
 /// What was found, as the answer to an item.
 pub(super) fn finish(found: Found) -> ItemAnswer {
+    if let Some(unclaimed) = found.unclaimed {
+        return ItemAnswer { cost: found.cost, ..ItemAnswer::invalid(format!("context.solver: {unclaimed}")) };
+    }
     ItemAnswer {
         nearest: found.nearest,
         pairs: found.pairs,

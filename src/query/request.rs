@@ -1,7 +1,7 @@
 //! What may be asked. Plain data: a transport decodes into these structs once, and nothing below sees bytes again.
 
 use crate::geometry::{Pose, Shape};
-use crate::narrow_phase::Accuracy;
+use crate::narrow_phase::{Accuracy, Solver};
 use crate::scene::BodyId;
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
@@ -59,6 +59,8 @@ pub struct Context {
     pub cut_off: Option<f64>,
     /// How narrow brackets have to be where `distance` is wanted.
     pub accuracy: Accuracy,
+    /// Who measures each pair. A pair that the solver does not take makes its item invalid.
+    pub solver: Solver,
     /// Which pairs count.
     pub filter: Filter,
     /// Pairs listed per item at most; more set the answer's `truncated`.
@@ -72,6 +74,7 @@ impl Default for Context {
             margin: 0.0,
             cut_off: None,
             accuracy: Accuracy::default(),
+            solver: Solver::Default,
             filter: Filter::default(),
             max_pairs: 100,
         }

@@ -6,7 +6,7 @@
 use super::answer::{PairAnswer, Side, Verdict, Witness};
 use super::request::{Context, Wants};
 use crate::geometry::{Placement, Shape};
-use crate::narrow_phase::{Bracket, Cost, Depth, Goal, Separation, separation};
+use crate::narrow_phase::{Bracket, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
 
 /// A placed shape and the side of a pair it stands for. The side's subshape is filled in from what is found.
 #[derive(Clone)]
@@ -57,12 +57,16 @@ pub(super) struct Search<'a> {
     decider: Option<PairAnswer>,
     pairs: Vec<PairAnswer>,
     truncated: bool,
+    /// The first pair that the solver does not take: then there is no answer.
+    unclaimed: Option<Unclaimed>,
     pub cost: Cost,
 }
 
 /// What a search ends with.
 pub(super) struct Found {
     pub verdict: Verdict,
+    /// The solver does not take one of the pairs, so there is no answer.
+    pub unclaimed: Option<Unclaimed>,
     /// Of the minimum over all pairs measured.
     bracket: Bracket,
     /// The pair of the minimum, or the one that decided.
@@ -82,6 +86,7 @@ impl<'a> Search<'a> {
             decider: None,
             pairs: Vec::new(),
             truncated: false,
+            unclaimed: None,
             cost: Cost::default(),
         }
     }
@@ -100,7 +105,7 @@ impl<'a> Search<'a> {
     /// answered at all.
     pub fn is_settled(&self) -> bool {
         let only_verdict = !self.plan.wants.distance && !self.plan.wants.pairs;
-        (only_verdict && self.verdict == Verdict::Collision) || (self.plan.stop)()
+        (only_verdict && self.verdict == Verdict::Collision) || self.unclaimed.is_some() || (self.plan.stop)()
     }
 
     /// Measures a pair as far as it matters. `margin` is the pair's own.
@@ -112,14 +117,17 @@ impl<'a> Search<'a> {
         let goal = Goal {
             depth: self.plan.depth(),
             accuracy: self.plan.context.accuracy,
+            solver: self.plan.context.solver,
             margin,
             // Beyond its own margin a pair needs no more than the proof that it is beyond.
             cut_off: if self.margins_matter() { matters_up_to.max(margin) } else { matters_up_to },
             stop: self.plan.stop,
         };
-        // A pair of two unbounded shapes has no distance, and is left out.
-        if let Ok(found) = separation(a.shape, b.shape, a.at, b.at, &goal) {
-            self.take(&found, a, b, margin);
+        match separation(a.shape, b.shape, a.at, b.at, &goal) {
+            Ok(found) => self.take(&found, a, b, margin),
+            // A pair of two unbounded shapes has no distance, and is left out.
+            Err(NoSeparation::Unbounded { .. }) => (),
+            Err(NoSeparation::Unclaimed(unclaimed)) => self.unclaimed = Some(unclaimed),
         }
     }
 
@@ -184,7 +192,7 @@ impl<'a> Search<'a> {
             self.decider.filter(|pair| pair.verdict != Verdict::Free)
         };
         let (verdict, pairs, truncated, cost) = (self.verdict, self.pairs, self.truncated, self.cost);
-        Found { verdict, bracket, nearest, pairs, truncated, cost }
+        Found { verdict, unclaimed: self.unclaimed, bracket, nearest, pairs, truncated, cost }
     }
 }
 
@@ -203,7 +211,8 @@ impl Found {
         let truncated = shorten(&mut pairs, plan.context.max_pairs) | self.truncated | other.truncated;
         let mut cost = self.cost;
         cost += other.cost;
-        Self { verdict: self.verdict.and(other.verdict), bracket, nearest, pairs, truncated, cost }
+        let unclaimed = self.unclaimed.or(other.unclaimed);
+        Self { verdict: self.verdict.and(other.verdict), unclaimed, bracket, nearest, pairs, truncated, cost }
     }
 }
 

@@ -135,6 +135,9 @@ impl<'a> States<'a> {
         let minima = self.wants.distance.then(|| (own.nearest.clone(), outer.nearest.clone()));
         let (nearest_self, nearest_scene) = minima.unwrap_or_default();
         let whole = finish(own.and(outer, &plan));
+        if whole.problem.is_some() {
+            return whole;
+        }
         ItemAnswer { nearest_self, nearest_scene, ..whole }
     }
 

@@ -17,6 +17,8 @@ const GEOMETRY: &str = "geometry";
 const BRACKET: &str = "narrow_phase::Bracket";
 const COST: &str = "narrow_phase::Cost";
 const TERMINATION: &str = "narrow_phase::Termination";
+/// The choice of a solver stands in questions: a plain value too.
+const SOLVER: &str = "narrow_phase::Solver";
 /// The world that changes. Only `scene` and `service` know it; everybody else sees snapshots.
 const WRITER: &str = "scene::Scene";
 /// Generated protobuf types.
@@ -46,7 +48,7 @@ pub const FLOORS: &[Floor] = &[
     },
     Floor {
         name: "transports",
-        may_name: &[GEOMETRY, "limits", "robot", "scene", "query", "service", BRACKET, COST, TERMINATION],
+        may_name: &[GEOMETRY, "limits", "robot", "scene", "query", "service", BRACKET, COST, TERMINATION, SOLVER],
         but_not: &[WRITER],
     },
     Floor {
@@ -68,6 +70,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("arrayvec", &[GEOMETRY, "narrow_phase"]),
     ("base64", &[GEOMETRY]),
     ("clap", &["app", "cli", "main"]),
+    ("clarabel", &["narrow_phase"]),
     ("indicatif", &["cli"]),
     ("libm", KERNEL),
     ("nalgebra", KERNEL),

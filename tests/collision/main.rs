@@ -9,6 +9,7 @@ mod laws;
 mod oracle;
 mod random_pairs;
 mod samples;
+mod solvers;
 mod soundness;
 mod specimen;
 mod sweep;

@@ -34,6 +34,25 @@ class Scenes(DaemonTest):
         np.testing.assert_allclose(pair.normal, [0, 0, 1], atol=1e-9)
         np.testing.assert_allclose(pair.point_on_b - pair.point_on_a, pair.signed_distance * pair.normal, atol=1e-9)
 
+    def test_every_solver_brackets_the_same_distance(self) -> None:
+        self.scene.apply(
+            clearance.add_body("a", clearance.box([1, 1, 1])),
+            clearance.add_body("b", clearance.box([1, 2, 1]), clearance.pose([0, 0, 5])),
+        )
+        for solver in ("default", "frank_wolfe", "gjk", "gjk_polyak", "gjk_nesterov", "gjk_nesterov_normalised", "sat", "qp"):
+            (answer,) = self.scene.distance(solver=solver)
+            self.assertLessEqual(answer.nearest.bracket.lower, 3.0, solver)
+            self.assertLessEqual(3.0, answer.nearest.bracket.upper, solver)
+
+    def test_a_pair_that_a_solver_does_not_take_is_invalid_and_says_why(self) -> None:
+        self.scene.apply(
+            clearance.add_body("a", clearance.cone(1.0, 1.0)),
+            clearance.add_body("b", clearance.box([1, 1, 1]), clearance.pose([0, 0, 5])),
+        )
+        (answer,) = self.scene.distance(solver="qp")
+        self.assertEqual(answer.verdict, Verdict.INVALID_INPUT)
+        self.assertIn("the solver qp does not take a cone and a box", answer.problem)
+
     def test_collide_lists_the_pairs_that_touch(self) -> None:
         ids = self.scene.apply(
             *(clearance.add_body(f"ball {x}", clearance.sphere(0.6), clearance.pose([x, 0, 0])) for x in (0, 1, 3))
@@ -128,6 +147,7 @@ class Refusals(DaemonTest):
             lambda: clearance.pose_from_matrix(2 * np.eye(4)),
             lambda: self.scene.check_states("arm", [1, 2, 3]),
             lambda: self.scene.distance(want="everything"),
+            lambda: self.scene.distance(solver="guess"),
         ):
             with self.assertRaises(ValueError):
                 make()

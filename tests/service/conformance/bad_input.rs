@@ -117,6 +117,7 @@ async fn contexts_that_cannot_be_are_refused_by_field(door: &impl Door) {
         (v1::Context { time_budget: Some(f64::NAN), ..context() }, "context.time_budget"),
         (v1::Context { time_budget: Some(-1.0), ..context() }, "context.time_budget"),
         (v1::Context { answer_form: 77, ..context() }, "context.answer_form"),
+        (v1::Context { solver: 77, ..context() }, "context.solver"),
     ];
     for (context, field) in cases {
         let question = v1::DistanceRequest { context: Some(context), ..distance(vec![all_pairs()]) };

@@ -14,6 +14,8 @@ through_every_door!(
     pairs_are_listed_in_order_and_truncated,
     left_out_bodies_are_not_looked_at,
     subjects_are_answered_one_by_one,
+    every_solver_brackets_the_same_distance,
+    a_pair_that_the_solver_does_not_take_is_invalid_and_says_why,
 );
 
 fn limits() -> Limits {
@@ -113,4 +115,46 @@ async fn subjects_are_answered_one_by_one(door: &impl Door) {
         let free = (6..=23).contains(&i) || i >= 36;
         assert_eq!(verdict == v1::Verdict::Free, free, "item {i}");
     }
+}
+
+const SOLVERS: [v1::Solver; 9] = [
+    v1::Solver::Unspecified,
+    v1::Solver::Default,
+    v1::Solver::FrankWolfe,
+    v1::Solver::Gjk,
+    v1::Solver::GjkPolyak,
+    v1::Solver::GjkNesterov,
+    v1::Solver::GjkNesterovNormalised,
+    v1::Solver::Sat,
+    v1::Solver::Qp,
+];
+
+async fn every_solver_brackets_the_same_distance(door: &impl Door) {
+    door.create_scene(SCENE).await.unwrap();
+    let edits =
+        vec![add("a", cuboid(0.5, 0.5, 0.5), at(0.0, 0.0, 0.0)), add("b", cuboid(0.5, 0.5, 0.5), at(3.0, 0.25, 0.0))];
+    door.apply(apply(edits)).await.unwrap();
+    for solver in SOLVERS {
+        let mut question = distance(vec![all_pairs()]);
+        question.context.as_mut().unwrap().solver = solver.into();
+        let answer = door.distance(question).await.unwrap();
+        let bracket = answer.items[0].nearest.as_ref().unwrap().bracket.unwrap();
+        assert!(bracket.lower <= 2.0 && 2.0 <= bracket.upper, "{solver:?}: {bracket:?}");
+    }
+}
+
+async fn a_pair_that_the_solver_does_not_take_is_invalid_and_says_why(door: &impl Door) {
+    balls(door, &[0.0, 3.0]).await;
+    let cylinder = shape(v1::shape::Core::Cylinder(v1::Cylinder { radius: 0.1, half_length: 0.1 }));
+    // Items that meet no such pair are answered.
+    let items = vec![placed(cuboid(0.1, 0.1, 0.1), at(3.0, 0.0, 0.0)), placed(cylinder, at(3.0, 0.0, 0.0))];
+    let mut question = collide(items);
+    question.context.as_mut().unwrap().solver = v1::Solver::Qp.into();
+    let answer = door.collide(question).await.unwrap();
+    assert_eq!(verdicts(&answer), [v1::Verdict::Collision, v1::Verdict::InvalidInput]);
+    let problem = &answer.items[1].problem;
+    assert_eq!(
+        problem,
+        "context.solver: the solver qp does not take a cylinder and a sphere: a cylinder is no polytope"
+    );
 }

@@ -175,6 +175,7 @@ class Scene:
         stop_at_first: bool = False,
         margin: float = 0.0,
         cut_off: Optional[float] = None,
+        solver: str = "default",
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> StatesAnswer:
@@ -182,9 +183,10 @@ class Scene:
 
         `positions` has shape (n, degrees of freedom); radians, metres for sliding joints. `want` is `verdict`,
         `distance` (brackets of the nearest pairs), or `depth` (tight brackets in overlaps, too). `at_least` waits for
-        a revision. With `stop_at_first` the states after the first hit are `NOT_RUN`.
+        a revision. With `stop_at_first` the states after the first hit are `NOT_RUN`. `solver` names who measures each
+        pair, for example `gjk_polyak`; a state with a pair that it does not take is `INVALID_INPUT`.
         """
-        context = self._context(want, margin, cut_off, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least)
         context.answer_form = query.ANSWER_FORM_BULK
         request = self._states_request(context, robot, positions, stop_at_first)
         with translated():
@@ -200,6 +202,7 @@ class Scene:
         want: str = "witness",
         margin: float = 0.0,
         cut_off: Optional[float] = None,
+        solver: str = "default",
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> list[ItemAnswer]:
@@ -207,7 +210,7 @@ class Scene:
 
         For a few states; a batch of thousands is quicker without.
         """
-        context = self._context(want, margin, cut_off, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least)
         context.wants.pairs = True
         request = self._states_request(context, robot, positions, stop_at_first=False)
         with translated():
@@ -221,11 +224,12 @@ class Scene:
         want: str = "witness",
         margin: float = 0.0,
         cut_off: Optional[float] = None,
+        solver: str = "default",
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> list[ItemAnswer]:
         """How far is the nearest body from each subject? Without subjects: the nearest pair of all bodies."""
-        context = self._context(want, margin, cut_off, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least)
         request = query.DistanceRequest(context=context, items=_subjects(subjects))
         with translated():
             answer = self._client._queries.Distance(request, timeout=timeout or self._client._timeout).answer
@@ -236,24 +240,26 @@ class Scene:
         *subjects: Subject,
         want: str = "verdict",
         margin: float = 0.0,
+        solver: str = "default",
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> list[ItemAnswer]:
         """Which bodies does each subject touch? Without subjects: which pairs of all bodies touch."""
-        context = self._context(want, margin, None, at_least)
+        context = self._context(want, margin, None, solver, at_least)
         request = query.CollideRequest(context=context, items=_subjects(subjects))
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
         return [ItemAnswer.of(item) for item in answer.items]
 
     def _context(
-        self, want: str, margin: float, cut_off: Optional[float], at_least: Optional[int]
+        self, want: str, margin: float, cut_off: Optional[float], solver: str, at_least: Optional[int]
     ) -> query.Context:
         return query.Context(
             scene=self.name,
             wants=_wants(want),
             margin=margin,
             cut_off=cut_off,
+            solver=_solver(solver),
             revision=query.RevisionRule(at_least=at_least) if at_least is not None else None,
         )
 
@@ -288,6 +294,14 @@ def _wants(want: str) -> query.Wants:
     if want not in known:
         raise ValueError(f"want: is {want!r}, known are {', '.join(known)}")
     return known[want]
+
+
+def _solver(name: str) -> query.Solver:
+    """`gjk_polyak` is SOLVER_GJK_POLYAK."""
+    known = {key.removeprefix("SOLVER_").lower(): number for key, number in query.Solver.items() if number}
+    if name not in known:
+        raise ValueError(f"solver: is {name!r}, known are {', '.join(known)}")
+    return known[name]
 
 
 def _subjects(subjects: Sequence[Subject]) -> list[query.Subject]:

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::{Path, geometry};
+use crate::narrow_phase::Solver;
 use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
 use crate::scene::{BodyId, Epoch, Revision, Snapshot};
 use crate::service::{Library, Patience, RevisionRule, Rule, ServiceError, Target};
@@ -143,9 +144,24 @@ fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context
         margin: context.margin,
         cut_off: context.cut_off,
         accuracy,
+        solver: solver(context.solver)?,
         filter: filter(&path.field("filter"), context.filter.as_ref(), snapshot)?,
         max_pairs: context.max_pairs.map_or(defaults.max_pairs, |pairs| pairs as usize),
     })
+}
+
+fn solver(number: i32) -> Result<Solver, ServiceError> {
+    match v1::Solver::try_from(number) {
+        Ok(v1::Solver::Unspecified | v1::Solver::Default) => Ok(Solver::Default),
+        Ok(v1::Solver::FrankWolfe) => Ok(Solver::FrankWolfe),
+        Ok(v1::Solver::Gjk) => Ok(Solver::Gjk),
+        Ok(v1::Solver::GjkPolyak) => Ok(Solver::GjkPolyak),
+        Ok(v1::Solver::GjkNesterov) => Ok(Solver::GjkNesterov),
+        Ok(v1::Solver::GjkNesterovNormalised) => Ok(Solver::GjkNesterovNormalised),
+        Ok(v1::Solver::Sat) => Ok(Solver::Sat),
+        Ok(v1::Solver::Qp) => Ok(Solver::Qp),
+        Err(_) => Err(unknown_value(&Path::root("context").field("solver"), number)),
+    }
 }
 
 fn filter(path: &Path<'_>, filter: Option<&v1::Filter>, snapshot: &Snapshot) -> Result<Filter, ServiceError> {

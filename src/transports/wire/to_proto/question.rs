@@ -2,6 +2,7 @@
 
 use super::count;
 use super::geometry::{pose, shape};
+use crate::narrow_phase::Solver;
 use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
 use crate::service::{RevisionRule, Rule, Target};
 use crate::transports::wire::v1;
@@ -52,6 +53,20 @@ fn context(target: &Target, context: &Context) -> v1::Context {
         max_pairs: Some(count(context.max_pairs)),
         time_budget: None,
         answer_form: v1::AnswerForm::Items.into(),
+        solver: solver(context.solver).into(),
+    }
+}
+
+fn solver(solver: Solver) -> v1::Solver {
+    match solver {
+        Solver::Default => v1::Solver::Default,
+        Solver::FrankWolfe => v1::Solver::FrankWolfe,
+        Solver::Gjk => v1::Solver::Gjk,
+        Solver::GjkPolyak => v1::Solver::GjkPolyak,
+        Solver::GjkNesterov => v1::Solver::GjkNesterov,
+        Solver::GjkNesterovNormalised => v1::Solver::GjkNesterovNormalised,
+        Solver::Sat => v1::Solver::Sat,
+        Solver::Qp => v1::Solver::Qp,
     }
 }
 

@@ -9,6 +9,18 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
 
+class Solver(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    SOLVER_UNSPECIFIED: _ClassVar[Solver]
+    SOLVER_DEFAULT: _ClassVar[Solver]
+    SOLVER_FRANK_WOLFE: _ClassVar[Solver]
+    SOLVER_GJK: _ClassVar[Solver]
+    SOLVER_GJK_POLYAK: _ClassVar[Solver]
+    SOLVER_GJK_NESTEROV: _ClassVar[Solver]
+    SOLVER_GJK_NESTEROV_NORMALISED: _ClassVar[Solver]
+    SOLVER_SAT: _ClassVar[Solver]
+    SOLVER_QP: _ClassVar[Solver]
+
 class AnswerForm(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     ANSWER_FORM_UNSPECIFIED: _ClassVar[AnswerForm]
@@ -47,6 +59,15 @@ class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     TERMINATION_ROUNDING_FLOOR: _ClassVar[Termination]
     TERMINATION_ITERATION_LIMIT: _ClassVar[Termination]
     TERMINATION_TIME_LIMIT: _ClassVar[Termination]
+SOLVER_UNSPECIFIED: Solver
+SOLVER_DEFAULT: Solver
+SOLVER_FRANK_WOLFE: Solver
+SOLVER_GJK: Solver
+SOLVER_GJK_POLYAK: Solver
+SOLVER_GJK_NESTEROV: Solver
+SOLVER_GJK_NESTEROV_NORMALISED: Solver
+SOLVER_SAT: Solver
+SOLVER_QP: Solver
 ANSWER_FORM_UNSPECIFIED: AnswerForm
 ANSWER_FORM_ITEMS: AnswerForm
 ANSWER_FORM_BULK: AnswerForm
@@ -123,7 +144,7 @@ class Filter(_message.Message):
     def __init__(self, groups: _Optional[_Iterable[str]] = ..., ignore: _Optional[_Iterable[_Union[_scene_pb2.BodyRef, _Mapping]]] = ..., disregard_allowed_collisions: bool = ..., layers: _Optional[int] = ..., mask: _Optional[int] = ...) -> None: ...
 
 class Context(_message.Message):
-    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form")
+    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     WANTS_FIELD_NUMBER: _ClassVar[int]
@@ -134,6 +155,7 @@ class Context(_message.Message):
     MAX_PAIRS_FIELD_NUMBER: _ClassVar[int]
     TIME_BUDGET_FIELD_NUMBER: _ClassVar[int]
     ANSWER_FORM_FIELD_NUMBER: _ClassVar[int]
+    SOLVER_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: RevisionRule
     wants: Wants
@@ -144,7 +166,8 @@ class Context(_message.Message):
     max_pairs: int
     time_budget: float
     answer_form: AnswerForm
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ...) -> None: ...
+    solver: Solver
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ...) -> None: ...
 
 class CheckStatesRequest(_message.Message):
     __slots__ = ("context", "robot", "positions", "mode")

@@ -1,0 +1,144 @@
+//! Search directions with a memory: the accelerated variants of GJK.
+//!
+//! GJK is Frank-Wolfe on `min |x|^2` with a full correction, so its direction, the gradient at the nearest point x, can be
+//! mixed with earlier ones as in accelerated descent (Montaut, Le Lidec, Petrik, Sivic and Carpentier, "Collision detection
+//! accelerated", RSS 2022). A vertex found with such a direction need not be the one that plain GJK would have found: when it
+//! brings no progress that says nothing about the optimum, and the search goes on plainly for good. Bounds are valid for any
+//! direction, so momentum never touches the proof.
+//!
+//! The weights are those that were seen to work, not all those in print: Polyak's weight 1/(k+1) dies out, as in Coal, where
+//! the paper prints (k+1)/(k+3), which on smooth shapes takes two to three times as many rounds as plain GJK.
+
+use super::solver::Solver;
+use super::support::unit;
+use crate::geometry::Vec3;
+
+/// Rounds after which a search goes on plainly in any case. Pairs that momentum suits are done in 30; where two large faces
+/// are nearly parallel and nearly touch it can circle for ever.
+const LONGEST: u32 = 64;
+
+/// What chooses the directions of a search.
+pub(super) trait Steering {
+    /// The next direction, of any length, from the nearest point `x` and the vertex `w` found last; none: that of the nearest
+    /// feature.
+    fn direction(&mut self, x: Vec3, w: Vec3) -> Option<Vec3>;
+
+    /// Told that the last vertex brought no progress: whether it was found by a direction of one's own, and there will be no more
+    /// of those.
+    fn gave_up(&mut self) -> bool;
+}
+
+/// GJK as it is.
+pub(super) struct Plain;
+
+impl Steering for Plain {
+    #[inline]
+    fn direction(&mut self, _: Vec3, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    #[inline]
+    fn gave_up(&mut self) -> bool {
+        false
+    }
+}
+
+/// How the next direction is mixed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rule {
+    Polyak,
+    Nesterov,
+    NesterovNormalised,
+}
+
+/// The memory of an accelerated search.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Momentum {
+    /// None: plain GJK by now.
+    rule: Option<Rule>,
+    /// The last direction, of the length its rule gave it; the first is the first vertex.
+    last: Option<Vec3>,
+    round: u32,
+}
+
+impl Momentum {
+    /// The one that the solver is named after.
+    pub fn new(solver: Solver) -> Self {
+        let rule = match solver {
+            Solver::GjkPolyak => Some(Rule::Polyak),
+            Solver::GjkNesterov => Some(Rule::Nesterov),
+            Solver::GjkNesterovNormalised => Some(Rule::NesterovNormalised),
+            Solver::Default | Solver::FrankWolfe | Solver::Gjk | Solver::Sat | Solver::Qp => None,
+        };
+        Self { rule, last: None, round: 0 }
+    }
+}
+
+impl Steering for Momentum {
+    fn direction(&mut self, x: Vec3, w: Vec3) -> Option<Vec3> {
+        if self.round == LONGEST {
+            self.rule = None;
+        }
+        let rule = self.rule?;
+        let k = f64::from(self.round);
+        self.round += 1;
+        let last = self.last.unwrap_or(w);
+        let mixed = match rule {
+            Rule::Polyak => mix(1.0 / (k + 1.0), last, x),
+            Rule::Nesterov => {
+                let weight = (k + 1.0) / (k + 3.0);
+                mix(weight, last, mix(weight, x, w))
+            }
+            Rule::NesterovNormalised => {
+                let weight = (k + 2.0) / (k + 3.0);
+                mix(weight, unit(last)?, unit(mix(weight, x, w))?)
+            }
+        };
+        self.last = Some(mixed);
+        Some(mixed)
+    }
+
+    fn gave_up(&mut self) -> bool {
+        self.rule.take().is_some()
+    }
+}
+
+/// `weight` of the one, the rest of the other.
+fn mix(weight: f64, one: Vec3, other: Vec3) -> Vec3 {
+    one * weight + other * (1.0 - weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_are_those_of_the_sources() {
+        let (x, first, w) = (Vec3::x(), Vec3::z(), Vec3::y());
+        let third = |solver| {
+            let mut momentum = Momentum::new(solver);
+            [first, w, w].map(|vertex| momentum.direction(x, vertex))[2]
+        };
+        // Polyak: z, then (z + x)/2, then a third of that and two of x.
+        let expected = first / 6.0 + x * (1.0 / 6.0 + 2.0 / 3.0);
+        assert!((third(Solver::GjkPolyak).unwrap() - expected).norm() < 1e-15);
+        // Nesterov, k = 0, 1, 2: weights 1/3, 1/2, 3/5.
+        let (y0, y1, y2) = (x / 3.0 + first * (2.0 / 3.0), (x + w) / 2.0, x * 0.6 + w * 0.4);
+        let expected = ((first / 3.0 + y0 * (2.0 / 3.0)) + y1) * 0.5 * 0.6 + y2 * 0.4;
+        assert!((third(Solver::GjkNesterov).unwrap() - expected).norm() < 1e-15);
+        assert!(third(Solver::Gjk).is_none());
+    }
+
+    #[test]
+    fn normalised_directions_do_not_depend_on_lengths_and_end() {
+        let mut one = Momentum::new(Solver::GjkNesterovNormalised);
+        let mut other = one;
+        let (x, w) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-2.0, 0.5, 1.0));
+        for _ in 0..LONGEST {
+            let (a, b) = (one.direction(x, w).unwrap(), other.direction(x * 1e-6, w * 1e-6).unwrap());
+            assert!((a - b).norm() < 1e-14);
+        }
+        assert!(one.direction(x, w).is_none() && !one.gave_up());
+        assert!(Momentum::new(Solver::GjkPolyak).gave_up());
+    }
+}
