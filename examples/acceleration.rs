@@ -91,22 +91,35 @@ impl Family {
         shape.expect("sizes are positive")
     }
 
-    /// Two shapes, turned at random, whose signed distance is `gap` metres along a random line of approach.
+    /// Two shapes, turned at random, whose signed distance is `gap` metres somewhere on a random line of approach.
     fn pair(self, gap: f64, random: &mut Random) -> Pair {
+        loop {
+            if let Some(pair) = self.try_pair(gap, random) {
+                return pair;
+            }
+        }
+    }
+
+    /// None when the line of approach passes by.
+    fn try_pair(self, gap: f64, random: &mut Random) -> Option<Pair> {
         let (a, b) = (self.shape(random), self.shape(random));
         let pose = |t, q| Pose::new(t, q).expect("components are finite").placement();
         let (at_a, turn, approach) = (pose(Vec3::zeros(), random.rotation()), random.rotation(), random.direction());
         let mut far = 4.0;
         // Newton's method: along a line the signed distance is convex, and its slope is the normal's share of the line.
-        loop {
+        for _ in 0..40 {
             let at_b = pose(approach * far, turn);
             let found = separation(&a, &b, &at_a, &at_b, &Goal::penetration()).expect("both are bounded");
             let step = (found.signed_distance - gap) / found.normal.dot(&approach);
             if step.abs() < 1e-9 {
-                return Pair { a, b, at_a, at_b };
+                return Some(Pair { a, b, at_a, at_b });
             }
             far -= step;
+            if !(0.0..4.0).contains(&far) {
+                return None;
+            }
         }
+        None
     }
 }
 

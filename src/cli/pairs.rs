@@ -138,6 +138,8 @@ struct Measured {
     upper: f64,
     normal: Option<[f64; 3]>,
     witness: Option<[[f64; 3]; 2]>,
+    point_error: f64,
+    normal_error: f64,
     termination: &'static str,
     iterations: u64,
     micros: f64,
@@ -169,7 +171,8 @@ fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, NoSeparation> {
 }
 
 fn written(separation: &Separation, micros: f64) -> Measured {
-    let Separation { bracket, signed_distance, normal, point_on_a, point_on_b, termination, cost, .. } = *separation;
+    let Separation { bracket, signed_distance, normal, point_on_a, point_on_b, .. } = *separation;
+    let Separation { point_error, normal_error, termination, cost, .. } = *separation;
     Measured {
         verdict: words::verdict(Verdict::of(&bracket, 0.0, termination)),
         signed_distance,
@@ -177,6 +180,8 @@ fn written(separation: &Separation, micros: f64) -> Measured {
         upper: bracket.upper,
         normal: finite(normal),
         witness: finite(point_on_a).zip(finite(point_on_b)).map(|(a, b)| [a, b]),
+        point_error,
+        normal_error,
         termination: words::termination(termination),
         iterations: cost.gjk_iterations + cost.epa_iterations,
         micros,
@@ -215,7 +220,7 @@ mod tests {
         let answers = lines(BALLS, 0);
         let answer = answers[0].as_object().unwrap();
         let keys: Vec<&str> = answer.keys().map(String::as_str).collect();
-        let expected = "id iterations lower micros normal signed_distance status termination upper verdict witness";
+        let expected = "id iterations lower micros normal normal_error point_error signed_distance status termination upper verdict witness";
         assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
         assert_eq!(answer["id"], "balls");
         assert_eq!(answer["status"], "ok");

@@ -12,7 +12,8 @@ use super::momentum::Steering;
 use super::outcome::{Cost, Separation, Termination};
 use super::polytope::inner_ball;
 use super::support::radius;
-use crate::geometry::tolerance::UNSCALED_EXTENT;
+use super::witness::{self, WITNESS_ERROR_ULPS};
+use crate::geometry::tolerance::{UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Vec3, length};
 
@@ -104,12 +105,19 @@ fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost:
     let normal = a.at.direction(opposite(found.direction));
     let point_on_a = a.at.point(found.nearest.on_a / target.scale) + normal * a.swept_radius;
     let point_on_b = point_on_a + normal * signed_distance;
+    let normal_error = witness::normal_error(found.lower, found.upper);
+    let cores =
+        witness::point_error(found, (signed_distance + target.radii) * target.scale, difference.error) / target.scale;
+    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
+    let point_error = cores + target.radii * normal_error.min(2.0) + rounding;
     Separation {
         bracket,
         signed_distance,
         normal,
         point_on_a,
         point_on_b,
+        point_error,
+        normal_error,
         termination: found.termination,
         subshape_a: 0,
         subshape_b: 0,

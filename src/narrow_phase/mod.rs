@@ -29,6 +29,7 @@ mod support;
 mod unbounded;
 mod union;
 mod walk;
+mod witness;
 
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};

@@ -76,6 +76,12 @@ pub struct Separation {
     pub point_on_a: Vec3,
     /// Witness on B.
     pub point_on_b: Vec3,
+    /// How far at most either witness point is from its shape; and, apart, the vector from the one to the other from the true
+    /// nearest vector. Metres. Of bodies of several pieces: of the two pieces that are named.
+    pub point_error: f64,
+    /// By how much at most the normal is turned from that of the true nearest vector; radians. Pi: nothing is known, as in an
+    /// overlap, where the normal of the least depth may be another one. Of several pieces: as above.
+    pub normal_error: f64,
     /// How the work stopped.
     pub termination: Termination,
     /// Which triangle of a mesh or part of a compound decided, on A; 0 for a single convex shape. A mesh within a

@@ -4,10 +4,12 @@ use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
 use super::pieces::pieces;
-use super::solver::Unclaimed;
+use super::solver::{Solver, Unclaimed};
 use super::support::is_convex;
 use super::union;
-use crate::geometry::{Core, Mat3, Placement, Shape, Vec3};
+use super::witness::WITNESS_ERROR_ULPS;
+use crate::geometry::tolerance::UNIT_ROUNDOFF;
+use crate::geometry::{Core, Mat3, Placement, Shape, Vec3, length};
 
 /// Why a pair gets no answer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +41,9 @@ pub fn separation(
     at_b: &Placement,
     goal: &Goal,
 ) -> Result<Separation, NoSeparation> {
-    goal.solver.claims(a, b)?;
+    if goal.solver != Solver::Default {
+        goal.solver.claims(a, b)?;
+    }
     if is_convex(a.core()) && is_convex(b.core()) {
         let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
         let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
@@ -53,5 +57,10 @@ pub fn separation(
         union::separation(&pieces_a, &pieces_b, goal).ok_or(NoSeparation::Unbounded { a: a.kind(), b: b.kind() })?;
     let point_on_a = at_a.point(found.point_on_a);
     let normal = at_a.direction(found.normal);
-    Ok(Separation { normal, point_on_a, point_on_b: point_on_a + normal * found.signed_distance, ..found })
+    let point_on_b = point_on_a + normal * found.signed_distance;
+    // Both points are turned and moved into the frame of both placements.
+    let reach = length(found.point_on_a) + found.signed_distance.abs() + length(at_a.translation);
+    let point_error = found.point_error + WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * reach;
+    let normal_error = found.normal_error + WITNESS_ERROR_ULPS * f64::EPSILON;
+    Ok(Separation { normal, point_on_a, point_on_b, point_error, normal_error, ..found })
 }

@@ -27,7 +27,8 @@ pub(super) fn with_containment(surfaces: Separation, a: &Piece, b: &Piece, goal:
     let bracket = Bracket { lower, upper: -surfaces.bracket.lower };
     let signed_distance = (-surfaces.signed_distance).clamp(bracket.lower, bracket.upper);
     let (normal, termination) = (-surfaces.normal, Termination::Decided);
-    Separation { bracket, signed_distance, normal, termination, ..surfaces }
+    // The points are on the surfaces, but the way out may be another.
+    Separation { bracket, signed_distance, normal, termination, normal_error: std::f64::consts::PI, ..surfaces }
 }
 
 fn may_contain(piece: &Piece) -> bool {

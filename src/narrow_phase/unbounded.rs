@@ -1,8 +1,11 @@
 //! A convex, bounded shape against a half-space or a plane: one or two support values.
 
+use std::f64::consts::PI;
+
 use super::convex::Convex;
 use super::outcome::{Bracket, Cost, Separation, Termination};
 use super::support::{radius, support};
+use super::witness::WITNESS_ERROR_ULPS;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::{Placement, Vec3, length};
 
@@ -40,8 +43,8 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
     let mut cost = Cost { pairs: 1, supports: 1, ..Cost::default() };
 
     let (mut point, mut side, mut of_cores) = (lowest, 1.0, height(lowest));
+    let highest = if b.thin { support(a.core, up) } else { lowest };
     if b.thin {
-        let highest = support(a.core, up);
         cost.supports += 1;
         if -height(highest) > of_cores {
             (point, side, of_cores) = (highest, -1.0, -height(highest));
@@ -54,12 +57,19 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
     // From A towards B: down to the half-space.
     let towards_b = a.at.direction(up) * -side;
     let point_on_a = a.at.point(point) + towards_b * a.swept_radius;
+    // The direction is known but for its own rounding; of a plane which side counts may not be.
+    let sides_alike = b.thin && (height(lowest) + height(highest)).abs() <= 4.0 * error;
+    let normal_error = if sides_alike { PI } else { WITNESS_ERROR_ULPS * f64::EPSILON };
+    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (signed_distance.abs() + length(a.at.translation));
+    let point_error = 2.0 * error + rounding;
     Separation {
         bracket: Bracket { lower: signed_distance - error, upper: signed_distance + error },
         signed_distance,
         normal: towards_b,
         point_on_a,
         point_on_b: point_on_a + towards_b * signed_distance,
+        point_error,
+        normal_error,
         termination: Termination::ClosedForm,
         subshape_a: 0,
         subshape_b: 0,

@@ -79,6 +79,12 @@ pub struct Witness {
     pub point_on_b: Vec3,
     /// Unit vector from A to B.
     pub normal: Vec3,
+    /// How far at most either point is from its shape; and, apart, the vector between them from the true nearest vector.
+    /// Metres.
+    pub point_error: f64,
+    /// By how much at most the normal is turned from the true nearest vector, radians; pi where nothing is known, as in an
+    /// overlap.
+    pub normal_error: f64,
 }
 
 /// What is known about one pair.

@@ -151,6 +151,8 @@ impl<'a> Search<'a> {
                 point_on_a: found.point_on_a,
                 point_on_b: found.point_on_b,
                 normal: found.normal,
+                point_error: found.point_error,
+                normal_error: found.normal_error,
             }),
             termination: found.termination,
         };

@@ -16,3 +16,4 @@ mod sweep;
 mod symmetry;
 mod unions;
 mod verdict_of_truth;
+mod witness_errors;

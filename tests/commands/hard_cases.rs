@@ -113,6 +113,9 @@ fn normals_and_witnesses_agree_with_the_truth_and_the_distance() {
             // Half the squared chord is one minus the cosine of the angle, without cancellation.
             let chord = [0, 1, 2].map(|i| normal[i] - truth[i]);
             assert!(dot(chord, chord).sqrt() <= 1e-4, "normal: {}", s.name());
+            // The truth is itself rounded, relative to how large the shapes are against their distance.
+            let rounding = 1e-15 + 4.0 * s.noise / s.truth.abs();
+            assert!(dot(chord, chord).sqrt() <= number(&s.answer["normal_error"]) + rounding, "normal: {}", s.name());
             normals_checked += 1;
         }
         let extreme = s.truth.abs() >= 1e150 || s.size >= 1e150;
@@ -124,6 +127,39 @@ fn normals_and_witnesses_agree_with_the_truth_and_the_distance() {
         }
     }
     assert!(normals_checked > 1000, "{normals_checked} normals");
+}
+
+#[test]
+fn every_solver_brackets_the_truth_of_the_cases_it_takes() {
+    let file = data("hard.jsonl");
+    let cases = json_lines(&fs::read(&file).unwrap());
+    // How many of the 1348 cases each takes at least: all, or those of polytopes.
+    for (solver, least) in [
+        ("frank_wolfe", cases.len()),
+        ("gjk", cases.len()),
+        ("gjk_polyak", cases.len()),
+        ("gjk_nesterov", cases.len()),
+        ("gjk_nesterov_normalised", cases.len()),
+        ("sat", 600),
+        ("qp", 800),
+    ] {
+        let output = clearance(&["pairs", file.to_str().unwrap(), "--solver", solver]);
+        let answers = json_lines(&output.stdout);
+        assert_eq!(answers.len(), cases.len(), "{solver}");
+        let mut taken = 0;
+        for (case, answer) in cases.iter().zip(&answers).filter(|(_, answer)| answer["status"] == "ok") {
+            let (truth, noise) = (number(&case["truth"]["signed_distance"]), number(&case["truth"]["noise"]));
+            let holds = |lower: f64, upper: f64| lower - 4.0 * noise <= truth && truth <= upper + 4.0 * noise;
+            assert!(holds(number(&answer["lower"]), number(&answer["upper"])), "{solver}: {truth}, {answer}");
+            taken += 1;
+        }
+        assert!(taken >= least, "{solver} took {taken} cases");
+        let unsupported = answers.iter().filter(|answer| answer["status"] == "unsupported");
+        assert_eq!(unsupported.filter(|answer| answer["message"].is_string()).count(), cases.len() - taken, "{solver}");
+    }
+    let unknown = clearance(&["pairs", file.to_str().unwrap(), "--solver", "guess"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("gjk_polyak"), "the names are listed");
 }
 
 #[test]

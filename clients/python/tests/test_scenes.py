@@ -32,6 +32,8 @@ class Scenes(DaemonTest):
         self.assertLessEqual(pair.bracket.lower, 3.0)
         self.assertLessEqual(3.0, pair.bracket.upper)
         np.testing.assert_allclose(pair.normal, [0, 0, 1], atol=1e-9)
+        self.assertLessEqual(np.linalg.norm(pair.normal - [0, 0, 1]), pair.normal_error)
+        self.assertLess(max(pair.normal_error, pair.point_error), 1e-3)
         np.testing.assert_allclose(pair.point_on_b - pair.point_on_a, pair.signed_distance * pair.normal, atol=1e-9)
 
     def test_every_solver_brackets_the_same_distance(self) -> None:

@@ -94,6 +94,10 @@ class PairAnswer:
     point_on_b: Optional[NDArray[np.float64]]
     #: Unit vector from A to B.
     normal: Optional[NDArray[np.float64]]
+    #: How far at most either point is from its shape, and, apart, the vector between them from the true nearest vector.
+    point_error: Optional[float]
+    #: By how much at most the normal is turned from the true nearest vector, radians; pi where nothing is known.
+    normal_error: Optional[float]
     #: How the work stopped, for example `CONVERGED`.
     termination: str
 
@@ -109,6 +113,8 @@ class PairAnswer:
             point_on_a=_array(witness.point_on_a) if witness else None,
             point_on_b=_array(witness.point_on_b) if witness else None,
             normal=_array(witness.normal) if witness else None,
+            point_error=witness.point_error if witness else None,
+            normal_error=witness.normal_error if witness else None,
             termination=messages.Termination.Name(pair.termination).removeprefix("TERMINATION_"),
         )
 

@@ -100,6 +100,8 @@ fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
         point_on_a: vec3(&witness.point_on_a)?,
         point_on_b: vec3(&witness.point_on_b)?,
         normal: vec3(&witness.normal)?,
+        point_error: witness.point_error,
+        normal_error: witness.normal_error,
     })
 }
 

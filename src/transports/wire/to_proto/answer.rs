@@ -139,6 +139,8 @@ fn witness(witness: &Witness) -> v1::Witness {
         point_on_a: Some(vec3(witness.point_on_a)),
         point_on_b: Some(vec3(witness.point_on_b)),
         normal: Some(vec3(witness.normal)),
+        point_error: witness.point_error,
+        normal_error: witness.normal_error,
     }
 }
 

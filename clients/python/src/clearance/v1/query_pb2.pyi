@@ -266,14 +266,18 @@ class BodySide(_message.Message):
     def __init__(self, id: _Optional[int] = ..., subshape: _Optional[int] = ...) -> None: ...
 
 class Witness(_message.Message):
-    __slots__ = ("point_on_a", "point_on_b", "normal")
+    __slots__ = ("point_on_a", "point_on_b", "normal", "point_error", "normal_error")
     POINT_ON_A_FIELD_NUMBER: _ClassVar[int]
     POINT_ON_B_FIELD_NUMBER: _ClassVar[int]
     NORMAL_FIELD_NUMBER: _ClassVar[int]
+    POINT_ERROR_FIELD_NUMBER: _ClassVar[int]
+    NORMAL_ERROR_FIELD_NUMBER: _ClassVar[int]
     point_on_a: _geometry_pb2.Vec3
     point_on_b: _geometry_pb2.Vec3
     normal: _geometry_pb2.Vec3
-    def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., normal: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ...) -> None: ...
+    point_error: float
+    normal_error: float
+    def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., normal: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_error: _Optional[float] = ..., normal_error: _Optional[float] = ...) -> None: ...
 
 class PairAnswer(_message.Message):
     __slots__ = ("a", "b", "verdict", "indeterminacy", "bracket", "signed_distance", "witness", "termination")
