@@ -51,18 +51,15 @@ impl ConvexHull {
     }
 
     /// Index of a point where `direction . x` is greatest, for a direction of any length. `hint` is a guess, such as the
-    /// last answer for a direction nearby; it must be an index of a point.
+    /// last answer for a direction nearby; anything else than an index of a point is no guess.
     ///
     /// The product at that point, in exact arithmetic, is less than the greatest by no more than `6 u |direction|
     /// radius`, u being the unit roundoff.
     #[must_use]
     pub fn farthest(&self, direction: Vec3, hint: u32) -> u32 {
         if let (Some(surface), Some(starts)) = (&self.surface, &self.starts) {
-            let d = direction;
-            let height = |vertex: u32| self.points[vertex as usize].dot(&d);
-            let start = starts.start(d);
-            let start = if height(hint) > height(start) { hint } else { start };
-            if let Some(vertex) = hull_climb::highest(&self.points, surface, self.radius, start, d) {
+            let start = if (hint as usize) < self.points.len() { hint } else { starts.start(direction) };
+            if let Some(vertex) = hull_climb::highest(&self.points, surface, self.radius, start, direction) {
                 return vertex;
             }
         }

@@ -25,10 +25,8 @@ pub(super) fn spanning(points: &[Vec3]) -> Spanning {
     faces.iter().flatten().for_each(|&i| is_corner[i as usize] = true);
     let corners = chosen(&distinct, &is_corner);
     let mut renumbered = vec![0; distinct.len()];
-    let mut next = 0;
-    for (new, _) in renumbered.iter_mut().zip(&is_corner).filter(|(_, is_corner)| **is_corner) {
-        *new = next;
-        next += 1;
+    for (next, old) in (0u32..).zip((0..distinct.len()).filter(|&old| is_corner[old])) {
+        renumbered[old] = next;
     }
     let triangles: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|i| renumbered[i as usize])).collect();
     if (distinct.len() - corners.len()).saturating_mul(triangles.len()) <= MOST_TESTS

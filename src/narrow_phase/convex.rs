@@ -1,7 +1,5 @@
 //! Two convex, bounded shapes: GJK on the cores, EPA where the cores meet or nearly do, swept radii taken off last.
 
-use std::borrow::Cow;
-
 use super::bracketing::Target;
 use super::epa::{Epa, epa};
 use super::gjk::{End, Gjk, gjk};
@@ -11,6 +9,7 @@ use super::minkowski::Difference;
 use super::momentum::Steering;
 use super::outcome::{Cost, Separation, Termination};
 use super::polytope::inner_ball;
+use super::segments;
 use super::support::radius;
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::{UNIT_ROUNDOFF, UNSCALED_EXTENT};
@@ -29,15 +28,38 @@ pub(super) struct Convex<'a> {
 
 /// What is known about A and B when the goal is reached.
 pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
+    if let Some(found) = segments::separation(&a, &b, goal) {
+        return found;
+    }
     let b_in_a = Placement::relative(a.at, b.at);
     let extent = radius(a.core) + radius(b.core) + length(b_in_a.translation);
+    let placement_error = a.placement_error + b.placement_error;
+    if !(UNSCALED_EXTENT.0..=UNSCALED_EXTENT.1).contains(&extent) {
+        return scaled_separation(&a, &b, goal, b_in_a, extent);
+    }
+    // Below the normal numbers roundings are absolute.
+    let denormal = 64.0 * f64::MIN_POSITIVE;
+    let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal);
+    solved(&a, &b, goal, difference, 1.0)
+}
+
+/// Pairs of extreme size are brought near 1 by a power of two, which rounds nothing.
+#[cold]
+fn scaled_separation(a: &Convex, b: &Convex, goal: &Goal, b_in_a: Placement, extent: f64) -> Separation {
     let scale = scale_of(extent);
-    let (core_a, core_b) = (scaled(a.core, scale), scaled(b.core, scale));
+    let scaled = |core: &Core| core.scaled(scale).expect("no larger than the extent, which is scaled to 1");
+    let (core_a, core_b) = (scaled(a.core), scaled(b.core));
     let b_in_a = Placement { translation: b_in_a.translation * scale, ..b_in_a };
-    // Below the normal numbers roundings are absolute. A pair of nothing but zeros has none.
+    // A pair of nothing but zeros rounds nothing.
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
-    let mut difference = Difference::new(&core_a, &core_b, b_in_a, placement_error);
+    let extent = radius(&core_a) + radius(&core_b) + length(b_in_a.translation);
+    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error), scale)
+}
+
+/// What the goal's solver finds out about the difference, as an answer about the shapes.
+#[inline]
+fn solved(a: &Convex, b: &Convex, goal: &Goal, mut difference: Difference, scale: f64) -> Separation {
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
     let found = ladder::solve(&mut difference, &target, &mut cost);
@@ -90,7 +112,8 @@ fn known(found: &Gjk, termination: Termination) -> Epa {
 }
 
 /// From the scaled frame of A to the frame of both placements, swept radii included.
-fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost: Cost) -> Separation {
+#[inline]
+fn place(found: &Epa, a: &Convex, target: &Target, difference: &Difference, cost: Cost) -> Separation {
     let bracket = target.bracket(found.lower, found.upper);
     // The witness pair measures best what has converged. What has not is measured by its best direction: on round
     // shapes a support value is exact where a polytope is still coarse.
@@ -100,10 +123,10 @@ fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost:
             found.lower + difference.error
         }
     };
-    let signed_distance = (of_cores / target.scale - target.radii).clamp(bracket.lower, bracket.upper);
+    let signed_distance = (of_cores * target.unscale - target.radii).clamp(bracket.lower, bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.
     let normal = a.at.direction(opposite(found.direction));
-    let point_on_a = a.at.point(found.nearest.on_a / target.scale) + normal * a.swept_radius;
+    let point_on_a = a.at.point(found.nearest.on_a * target.unscale) + normal * a.swept_radius;
     let point_on_b = point_on_a + normal * signed_distance;
     let normal_error = witness::normal_error(found.lower, found.upper);
     let cores =
@@ -125,19 +148,11 @@ fn place(found: &Epa, a: Convex, target: &Target, difference: &Difference, cost:
     }
 }
 
-/// 1 for ordinary extents, else the power of two that brings the extent near 1. Powers of two scale without rounding.
+/// The power of two that brings the extent near 1; 1 for an extent of zero.
 fn scale_of(extent: f64) -> f64 {
-    let (least, greatest) = UNSCALED_EXTENT;
-    if extent == 0.0 || (least..=greatest).contains(&extent) {
+    if extent == 0.0 {
         return 1.0;
     }
     let exponent = -libm::log2(extent).floor();
     libm::exp2(exponent.clamp(-1000.0, 1000.0))
-}
-
-fn scaled(core: &Core, scale: f64) -> Cow<'_, Core> {
-    if scale == 1.0 {
-        return Cow::Borrowed(core);
-    }
-    Cow::Owned(core.scaled(scale).expect("a core no larger than the extent is in reach when that is scaled to 1"))
 }

@@ -97,6 +97,8 @@ fn expand(
     // Once inside, the origin stays inside: the surface only grows.
     let mut encloses = polytope.encloses_origin();
     let mut follow = true;
+    // Corners of the face of the best direction.
+    let mut deepest = None;
     for iteration in 0..MAX_ITERATIONS {
         let local = (follow && LOCAL_ITERATIONS.contains(&iteration)).then(|| polytope.nearest_newest_face()).flatten();
         let Some(face) = local.or_else(|| polytope.nearest_face()) else {
@@ -114,10 +116,10 @@ fn expand(
         cost.supports += 1;
         cost.epa_iterations += 1;
         if raise_lower(&mut best, opposite(outward), -outward.dot(&vertex.w), difference) {
-            let [a, b, c] = polytope.corners(face);
-            best.nearest = nearest_of_triangle(a, b, c, difference.extent);
+            deepest = Some(polytope.corners(face));
             if !encloses {
-                best.upper = best.upper.min(best.nearest.w.norm() + error);
+                best.upper =
+                    best.upper.min(nearest_of_triangle(polytope.corners(face), difference.extent).w.norm() + error);
             }
         }
         let bracket = target.bracket(best.lower, best.upper);
@@ -148,6 +150,9 @@ fn expand(
         }
         polytope.insert(vertex, face);
         encloses = encloses || polytope.encloses_origin();
+    }
+    if let Some(corners) = deepest {
+        best.nearest = nearest_of_triangle(corners, difference.extent);
     }
     best
 }

@@ -4,18 +4,23 @@ use super::bracketing::Target;
 use super::convex::by_gjk;
 use super::epa::{Epa, epa};
 use super::frank_wolfe::frank_wolfe;
+use super::goal::Depth;
 use super::minkowski::Difference;
 use super::momentum::{Momentum, Plain};
 use super::outcome::{Cost, Termination};
 use super::qp::qp;
-use super::sat::{Sat, sat};
+use super::sat::{Sat, boxes, sat};
+use super::sat_boxes::apart_along_faces;
+use super::smooth::{self, Smooth};
 use super::solver::Solver;
+use crate::geometry::Core;
 
 /// What the goal's solver finds out about the difference.
 #[inline]
 pub(super) fn solve(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
     match target.goal.solver {
-        Solver::Default | Solver::Gjk => by_gjk(difference, difference.centers(), Plain, target, cost),
+        Solver::Default => by_default(difference, target, cost),
+        Solver::Gjk => by_gjk(difference, difference.centers(), Plain, target, cost),
         chosen @ (Solver::FrankWolfe
         | Solver::GjkPolyak
         | Solver::GjkNesterov
@@ -23,6 +28,27 @@ pub(super) fn solve(difference: &mut Difference, target: &Target, cost: &mut Cos
         | Solver::Sat
         | Solver::Qp) => by_choice(chosen, difference, target, cost),
     }
+}
+
+/// The fastest way for the kinds of the cores; `docs/queries.md` gives the reasons.
+#[inline]
+fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
+    if let Some(pair) = Smooth::of(difference)
+        && let Some(found) = smooth::newton(&pair, difference, target, cost)
+    {
+        return found;
+    }
+    if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b) {
+        // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's.
+        let (a, b) = (*a, *b);
+        let is_verdict = target.goal.depth == Depth::Verdict;
+        if (is_verdict || apart_along_faces(a, b, &difference.b_in_a) <= 0.0)
+            && let Sat::Answer(answer) = boxes(a, b, difference, target, cost)
+        {
+            return answer;
+        }
+    }
+    by_gjk(difference, difference.centers(), Plain, target, cost)
 }
 
 /// Apart from the common way, so that it does not grow by what is seldom asked for.

@@ -5,9 +5,9 @@
 
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::vector::opposite;
-use crate::geometry::{Core, Placement, Vec3, length};
+use crate::geometry::{Core, Placement, Vec3};
 
-use super::support::{center, farthest, radius};
+use super::support::{NO_HINT, center, farthest};
 
 /// A vertex of the difference with the point of A it came from. Metres, frame of A.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,26 +31,35 @@ pub(super) struct Difference<'a> {
     /// true difference is within this of the value at the vertex found, for a unit d. Metres. Derived in
     /// `docs/derivations/bracket.md`.
     pub error: f64,
-    /// The corners found last, where a search along edges may start.
+    /// The corners found last, and the direction, where a search along edges may start.
     hints: [u32; 2],
+    last: Vec3,
 }
 
 impl<'a> Difference<'a> {
+    /// `extent`: S, no less than the sum of both cores' radii and the distance of their origins, metres.
     /// `placement_error`: how far a point of B may be from its stored place in A's frame by roundings before, metres.
-    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, placement_error: f64) -> Self {
-        let extent = radius(a) + radius(b) + length(b_in_a.translation);
+    #[inline]
+    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, extent: f64, placement_error: f64) -> Self {
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
-        Self { a, b, b_in_a, extent, error, hints: [0; 2] }
+        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros() }
     }
 
-    /// The vertex where `direction . c` is least.
+    /// The vertex where `direction . c` is least, for a unit direction.
     #[inline]
     pub fn lowest(&mut self, direction: Vec3) -> Vertex {
-        let [hint_a, hint_b] = self.hints;
+        // Far from the last direction a fresh start is nearer than the last corner.
+        let is_near = direction.dot(&self.last) > 0.9;
+        let [hint_a, hint_b] = if is_near { self.hints } else { [NO_HINT; 2] };
         let (on_a, corner_a) = farthest(self.a, opposite(direction), hint_a);
         let (on_b, corner_b) = farthest(self.b, self.b_in_a.direction_into(direction), hint_b);
-        self.hints = [corner_a, corner_b];
+        (self.hints, self.last) = ([corner_a, corner_b], direction);
         Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [corner_a, corner_b] }
+    }
+
+    /// The cores, and the place of the second in the frame of the first.
+    pub fn parts(&self) -> (&'a Core, &'a Core, Placement) {
+        (self.a, self.b, self.b_in_a)
     }
 
     /// A first guess of the direction from the origin to the difference: between the centres of the bounds.

@@ -22,6 +22,9 @@ const VERTICES: usize = 520;
 /// Faces at most: a closed surface of triangles has 2 V - 4.
 const FACES: usize = 2 * VERTICES;
 
+/// The index after each of three, round and round.
+const NEXT: [usize; 3] = [1, 2, 0];
+
 /// A triangle of the surface, counter-clockwise from outside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
@@ -55,6 +58,8 @@ pub(super) struct Polytope {
     not_holding: usize,
     /// The rounded side of a point is right beyond this.
     doubt: f64,
+    /// Rounding of an offset, metres.
+    slack: f64,
 }
 
 /// An edge between a face that is seen and one that is not, as the seen face runs along it.
@@ -74,13 +79,15 @@ impl Polytope {
         // The side of a point is a product of three differences of up to 2 S; each of its 6 terms takes part in 10 roundings.
         let doubt = 512.0 * UNIT_ROUNDOFF * extent * extent * extent;
         Self {
-            vertices: ArrayVec::new_const(),
-            faces: ArrayVec::new_const(),
-            queue: ArrayVec::new_const(),
-            free: ArrayVec::new_const(),
-            fan: ArrayVec::new_const(),
+            vertices: ArrayVec::new(),
+            faces: ArrayVec::new(),
+            queue: ArrayVec::new(),
+            free: ArrayVec::new(),
+            fan: ArrayVec::new(),
             not_holding: 0,
             doubt,
+            // Three products and two sums, and the length of the normal: at most 8 roundings of the size.
+            slack: 8.0 * UNIT_ROUNDOFF * extent,
         }
     }
 
@@ -126,7 +133,8 @@ impl Polytope {
 
     /// The three vertices of a face.
     pub fn corners(&self, face: usize) -> [Vertex; 3] {
-        self.faces[face].corners.map(|i| self.vertices[usize::from(i)])
+        let [a, b, c] = self.faces[face].corners;
+        [self.vertices[usize::from(a)], self.vertices[usize::from(b)], self.vertices[usize::from(c)]]
     }
 
     /// Whether the vertex is strictly outside the plane of the face. Exact.
@@ -156,21 +164,26 @@ impl Polytope {
         let mut horizon = ArrayVec::<HorizonEdge, FACES>::new();
         let mut open = ArrayVec::<(u16, u8), { 2 * FACES }>::new();
         self.remove(seen);
-        open.extend([2, 1, 0].map(|edge| (seen as u16, edge)));
+        for edge in [2, 1, 0] {
+            open.push((seen as u16, edge));
+        }
         while let Some((f, edge)) = open.pop() {
             let i = usize::from(edge);
-            let Face { corners, adjacent, .. } = self.faces[usize::from(f)];
-            let beyond = &self.faces[usize::from(adjacent[i])];
+            let face = &self.faces[usize::from(f)];
+            let neighbour = face.adjacent[i];
+            let (from, to) = (face.corners[i], face.corners[NEXT[i]]);
+            let beyond = &self.faces[usize::from(neighbour)];
             if !beyond.alive {
                 continue; // Seen already.
             }
-            let (from, to) = (corners[i], corners[(i + 1) % 3]);
             let across = if beyond.corners[0] == to { 0 } else { 1 + u8::from(beyond.corners[2] == to) };
             if self.side(beyond, vertex.w) < 0.0 {
-                self.remove(usize::from(adjacent[i]));
-                open.extend([(across + 2) % 3, (across + 1) % 3].map(|edge| (adjacent[i], edge)));
+                self.remove(usize::from(neighbour));
+                let next = NEXT[usize::from(across)];
+                open.push((neighbour, NEXT[next] as u8));
+                open.push((neighbour, next as u8));
             } else {
-                horizon.push(HorizonEdge { from, to, beyond: adjacent[i], edge: across });
+                horizon.push(HorizonEdge { from, to, beyond: neighbour, edge: across });
             }
         }
         self.cover(&horizon, vertex);
@@ -196,18 +209,21 @@ impl Polytope {
             self.fan.push(face);
         }
         let count = horizon.len();
+        let mut previous = count - 1;
         for i in 0..count {
-            debug_assert_eq!(horizon[i].to, horizon[(i + 1) % count].from, "the horizon is one loop");
-            let (next, previous) = (self.fan[(i + 1) % count], self.fan[(i + count - 1) % count]);
-            let face = &mut self.faces[usize::from(self.fan[i])];
-            (face.adjacent[1], face.adjacent[2]) = (next, previous);
+            debug_assert_eq!(horizon[previous].to, horizon[i].from, "the horizon is one loop");
+            let (before, face) = (self.fan[previous], self.fan[i]);
+            self.faces[usize::from(face)].adjacent[2] = before;
+            self.faces[usize::from(before)].adjacent[1] = face;
+            previous = i;
         }
     }
 
     fn add_face(&mut self, corners: [u16; 3], adjacent: [u16; 3]) -> u16 {
-        let [a, b, c] = corners.map(|i| self.vertices[usize::from(i)].w);
+        let at = |i: usize| self.vertices[usize::from(corners[i])].w;
+        let (a, b, c) = (at(0), at(1), at(2));
         let product = (b - a).cross(&(c - a));
-        let (normal, offset) = plane(product, a, b, c);
+        let (normal, offset) = plane(product, a, b, c, self.slack);
         let mut face = Face { corners, adjacent, normal, offset, product, holds_origin: false, alive: true };
         face.holds_origin = self.side(&face, Vec3::zeros()) > 0.0;
         self.not_holding += usize::from(!face.holds_origin);
@@ -236,23 +252,25 @@ impl Polytope {
 }
 
 /// Unit normal of a triangle from the product of two of its edges, and an offset along it that none of its points is
-/// below, proved.
-fn plane(product: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, f64) {
+/// below, proved. `slack`: rounding of the offset.
+#[inline(always)]
+fn plane(product: Vec3, a: Vec3, b: Vec3, c: Vec3, slack: f64) -> (Vec3, f64) {
     // A needle whose product vanishes in f64: any direction gives a valid offset.
-    let normal = unit(product).or_else(|| unit(a + b + c)).unwrap_or_else(Vec3::x);
-    let least = normal.dot(&a).min(normal.dot(&b)).min(normal.dot(&c));
-    let size = sum_of_sizes(a).max(sum_of_sizes(b)).max(sum_of_sizes(c));
-    // Three products and two sums, and the length of the normal: at most 8 roundings of the size.
-    (normal, least - 8.0 * UNIT_ROUNDOFF * size)
+    let normal = match unit(product) {
+        Some(normal) => normal,
+        None => unit(a + b + c).unwrap_or_else(Vec3::x),
+    };
+    (normal, normal.dot(&a).min(normal.dot(&b)).min(normal.dot(&c)) - slack)
 }
 
 /// Radius of a ball around the origin that is in the tetrahedron, which strictly encloses the origin: proved, metres.
 pub(super) fn inner_ball([a, b, c, d]: [Vertex; 4]) -> f64 {
     let flip = if orientation(a.w, b.w, c.w, d.w) > 0.0 { 1.0 } else { -1.0 };
+    let size = sum_of_sizes(a.w).max(sum_of_sizes(b.w)).max(sum_of_sizes(c.w)).max(sum_of_sizes(d.w));
     let mut least = f64::INFINITY;
     for (p, q, r) in [(a, b, c), (a, d, b), (a, c, d), (b, d, c)] {
         let product = (q.w - p.w).cross(&(r.w - p.w)) * flip;
-        least = least.min(plane(product, p.w, q.w, r.w).1);
+        least = least.min(plane(product, p.w, q.w, r.w, 8.0 * UNIT_ROUNDOFF * size).1);
     }
     least.max(0.0)
 }

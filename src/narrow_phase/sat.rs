@@ -15,6 +15,7 @@ use super::sat_boxes::best_axis;
 use super::sat_polytopes::Axes;
 use super::small_polytope::SmallPolytope;
 use crate::geometry::tolerance::SUPPORT_ERROR_ULPS;
+use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Vec3};
 
 /// What the axes tell.
@@ -65,7 +66,7 @@ fn concluded(
     cost: &mut Cost,
 ) -> Sat {
     let error = difference.error;
-    let direction = -normal;
+    let direction = opposite(normal);
     let vertex = difference.lowest(direction);
     cost.supports += 1;
     let lower = direction.dot(&vertex.w) - error;

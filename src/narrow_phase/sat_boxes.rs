@@ -9,6 +9,7 @@
 //! the loop has neither roots nor divisions. A product `e_i x M_j` only moves components of M, so it is exact, however near to
 //! parallel the edges are; none is left out for that, and parallel edges, whose product is zero, have no face to lose.
 
+use crate::geometry::vector::opposite;
 use crate::geometry::{Placement, Vec3};
 
 /// The axis along which two boxes are farthest apart, or least deep in one another.
@@ -39,10 +40,7 @@ const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 /// normal of a face, and then it is the face that touches.
 pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack: f64) -> BoxAxis {
     let (m, t) = (&b_in_a.rotation, &b_in_a.translation);
-    let size = m.abs();
-    let along_b = m.tr_mul(t);
-    let of_a = t.abs() - a - size * b;
-    let of_b = along_b.abs() - b - size.tr_mul(&a);
+    let (of_a, of_b) = along_faces(a, b, b_in_a);
     let (i, j) = (greatest(&of_a), greatest(&of_b));
     let (feature, face) =
         if of_a[i] >= of_b[j] { (Feature::FaceOfA(i), of_a[i]) } else { (Feature::FaceOfB(j), of_b[j]) };
@@ -71,7 +69,7 @@ pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack
     if value - face <= slack {
         winner = feature;
     }
-    let toward_b = |n: Vec3| if n.dot(t) < 0.0 { -n } else { n };
+    let toward_b = |n: Vec3| if n.dot(t) < 0.0 { opposite(n) } else { n };
     let normal = match winner {
         Feature::FaceOfA(i) => Vec3::ith(i, 1.0),
         Feature::FaceOfB(j) => m.column(j).normalize(),
@@ -84,6 +82,23 @@ pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack
         }
     };
     BoxAxis { normal: toward_b(normal), value, feature: winner }
+}
+
+/// The greatest signed distance along the normals of faces, metres: cheap to look at first.
+pub(super) fn apart_along_faces(a: Vec3, b: Vec3, b_in_a: &Placement) -> f64 {
+    let (of_a, of_b) = along_faces(a, b, b_in_a);
+    of_a[greatest(&of_a)].max(of_b[greatest(&of_b)])
+}
+
+/// The signed distances along the normals of the faces of A and of B.
+#[inline(always)]
+fn along_faces(a: Vec3, b: Vec3, b_in_a: &Placement) -> (Vec3, Vec3) {
+    let (m, t) = (&b_in_a.rotation, &b_in_a.translation);
+    let size = |i: usize, j: usize| m[(i, j)].abs();
+    let along_b = b_in_a.direction_into(*t);
+    let of_a = |i: usize| t[i].abs() - a[i] - (size(i, 0) * b.x + size(i, 1) * b.y + size(i, 2) * b.z);
+    let of_b = |j: usize| along_b[j].abs() - b[j] - (size(0, j) * a.x + size(1, j) * a.y + size(2, j) * a.z);
+    (Vec3::new(of_a(0), of_a(1), of_a(2)), Vec3::new(of_b(0), of_b(1), of_b(2)))
 }
 
 fn greatest(v: &Vec3) -> usize {

@@ -107,7 +107,7 @@ impl Simplex {
             3 => Some(of_three(&w)),
             _ => of_four(&w),
         };
-        let slack = 8.0 * UNIT_ROUNDOFF * extent;
+        let slack = 64.0 * UNIT_ROUNDOFF * extent;
         let place = match guess.filter(|place| is_nearest(place, &w[..count], slack)) {
             Some(place) => place,
             None => match exhaustive(&w[..count]) {
@@ -131,7 +131,7 @@ impl Simplex {
 }
 
 /// The point of a triangle nearest the origin, with the point of A it comes from. `extent` as for [`Simplex::add`].
-pub(super) fn nearest_of_triangle(a: Vertex, b: Vertex, c: Vertex, extent: f64) -> Vertex {
+pub(super) fn nearest_of_triangle([a, b, c]: [Vertex; 3], extent: f64) -> Vertex {
     let mut simplex = Simplex::point(a);
     simplex.vertices[1] = b;
     simplex.len = 2;
@@ -140,12 +140,14 @@ pub(super) fn nearest_of_triangle(a: Vertex, b: Vertex, c: Vertex, extent: f64) 
     simplex.nearest()
 }
 
-/// Whether no vertex lies before the plane through x across x, within rounding.
+/// Whether no vertex left out lies before the plane through x across x, within rounding: then x is too far by no more than the
+/// slack, half of what a vertex may be off.
 #[inline(always)]
 fn is_nearest(place: &Place, w: &[Vec3], slack: f64) -> bool {
     let x = place.x;
     let least = x.norm_squared() - slack * sum_of_sizes(x);
-    w.iter().all(|v| v.dot(&x) >= least)
+    let slots = &place.slots[..place.len];
+    (0..w.len()).all(|i| slots.contains(&i) || w[i].dot(&x) >= least)
 }
 
 #[inline]

@@ -11,10 +11,14 @@ use crate::geometry::{Aabb, Core, Vec3, length};
 /// # Panics
 /// For cores that are not convex and bounded: callers have taken those apart ([`is_convex`]).
 pub(super) fn support(core: &Core, direction: Vec3) -> Vec3 {
-    farthest(core, direction, 0).0
+    farthest(core, direction, NO_HINT).0
 }
 
-/// The same, and which corner of the core it is (0 for a core without corners). `hint`: the corner found last, or 0.
+/// No guess of a corner.
+pub(super) const NO_HINT: u32 = u32::MAX;
+
+/// The same, and which corner of the core it is (0 for a core without corners). `hint`: a corner that may be
+/// near, or [`NO_HINT`].
 #[inline]
 pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
     let d = direction;
@@ -109,20 +113,20 @@ pub(super) fn is_convex(core: &Core) -> bool {
 }
 
 /// Largest distance of a point of the core from its origin; an upper bound within rounding, metres.
+#[inline]
 pub(super) fn radius(core: &Core) -> f64 {
-    let farthest = |points: &[Vec3]| points.iter().map(|p| length(*p)).fold(0.0, f64::max);
     let box_corner = |bounds: Aabb| length(bounds.min.abs().sup(&bounds.max.abs()));
     match core {
         Core::Point => 0.0,
         Core::Cuboid { half_extents } => length(*half_extents),
         Core::AxialSegment { half_length } => *half_length,
         Core::Cylinder { radius, half_length } | Core::Cone { radius, half_length } => {
-            libm::hypot(*radius, *half_length)
+            length(Vec3::new(*radius, *half_length, 0.0))
         }
         Core::Ellipsoid { radii } => greatest_size(*radii),
         Core::Convex(hull) => hull.radius(),
-        Core::Triangle(corners) => farthest(corners),
-        Core::Segment(ends) => farthest(ends),
+        Core::Triangle([a, b, c]) => length(*a).max(length(*b)).max(length(*c)),
+        Core::Segment([a, b]) => length(*a).max(length(*b)),
         Core::HalfSpace { .. } | Core::Plane { .. } => 0.0,
         Core::Mesh(mesh) => box_corner(mesh.bounds()),
         Core::Compound(compound) => box_corner(compound.bounds()),
