@@ -9,6 +9,7 @@ use super::bracketing::Target;
 use super::convex::Convex;
 use super::goal::Goal;
 use super::outcome::{Cost, Separation, Termination};
+use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::{Core, Vec3, length};
 
@@ -60,19 +61,26 @@ pub(super) fn separation(a: &Convex, b: &Convex, goal: &Goal) -> Option<Separati
     let least = normal.dot(&between) - normal.dot(&one.half).abs() - normal.dot(&other.half).abs();
     let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale: 1.0, unscale: 1.0 };
-    let bracket = target.bracket(least - error, distance + error);
+    let (lower, upper) = (least - error, distance + error);
+    let bracket = target.bracket(lower, upper);
     let at_floor = distance - least <= 2.0 * error;
     if !(target.is_decided(&bracket) || target.is_met(&bracket) || at_floor) {
         return None;
     }
     let signed_distance = (distance - target.radii).clamp(bracket.lower, bracket.upper);
     let point_on_a = a.at.translation + (one.middle + one.half * s + normal * a.swept_radius);
+    let normal_error = witness::normal_error(lower, upper);
+    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
+    let from_nearest = if lower > 0.0 { witness::gap(lower, upper) } else { 0.0 };
+    let point_error = from_nearest + 2.0 * error + target.radii * normal_error.min(2.0) + rounding;
     Some(Separation {
         bracket,
         signed_distance,
         normal,
         point_on_a,
         point_on_b: point_on_a + normal * signed_distance,
+        point_error,
+        normal_error,
         termination: Termination::ClosedForm,
         subshape_a: 0,
         subshape_b: 0,

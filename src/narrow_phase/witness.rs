@@ -8,14 +8,15 @@ pub(super) const WITNESS_ERROR_ULPS: f64 = 64.0;
 
 /// By how much the direction that proved `lower` may be turned from the nearest vector x* of the cores, radians.
 ///
-/// `n . x* >= L` for the direction n, and `|x*| <= U`, so the cosine of the angle is at least L / U.
+/// `n . x* >= L` for the direction n, and `|x*| <= U`, so the cosine of the angle is at least L / U: it is below a right
+/// angle, and below its own tangent.
 pub(super) fn normal_error(lower: f64, upper: f64) -> f64 {
     // Comparison order matters: bounds that are not there yet are infinite, or their difference not a number.
     if !(lower > 0.0 && upper.is_finite()) {
         return std::f64::consts::PI;
     }
     // The direction itself, and its turn into the frame of both placements, is off by some 40 roundings.
-    libm::atan2(gap(lower, upper), lower) + WITNESS_ERROR_ULPS * f64::EPSILON
+    (gap(lower, upper) / lower).min(std::f64::consts::FRAC_PI_2) + WITNESS_ERROR_ULPS * f64::EPSILON
 }
 
 /// How far at most a witness point is from its core, metres; apart also how far the vector between them is from x*.
@@ -28,7 +29,9 @@ pub(super) fn point_error(found: &Epa, distance: f64, error: f64) -> f64 {
     short + from_nearest + 2.0 * error
 }
 
-/// The root of `U^2 - L^2`, as a product that neither cancels nor overflows.
-fn gap(lower: f64, upper: f64) -> f64 {
-    (upper - lower).max(0.0).sqrt() * (upper + lower).sqrt()
+/// The root of `U^2 - L^2`, as a product that does not cancel. One root, so that powers of two scale it without rounding;
+/// bounds of scaled cores are far from where the product would under- or overflow.
+#[inline]
+pub(super) fn gap(lower: f64, upper: f64) -> f64 {
+    ((upper - lower).max(0.0) * (upper + lower)).sqrt()
 }
