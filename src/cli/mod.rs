@@ -13,6 +13,7 @@ mod scene_file;
 mod serve;
 mod state_line;
 mod states;
+mod touching;
 mod words;
 
 pub use command::run;

@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::case::{self, Case};
 use super::exit_code::Failed;
+use super::touching::{self, Listed};
 use super::words;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{self, Accuracy, Depth, Goal, NoSeparation, Separation, Solver};
@@ -36,6 +37,9 @@ pub struct Pairs {
     /// Who does it; a pair that the solver does not take is answered with the status `unsupported`.
     #[arg(long, value_name = "NAME", default_value_t, value_parser = solver_named)]
     pub solver: Solver,
+    /// Also list the pairs of triangles that touch, where one shape is a mesh and the other a mesh or convex; at most so many.
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "100000")]
+    pub touching: Option<usize>,
     /// Microseconds after which the work on a pair ends with the bracket reached so far.
     #[arg(long, value_name = "N")]
     pub max_time_us: Option<u64>,
@@ -143,6 +147,8 @@ struct Measured {
     termination: &'static str,
     iterations: u64,
     micros: f64,
+    #[serde(flatten)]
+    listed: Option<Listed>,
 }
 
 fn answer(line: &[u8], pairs: &Pairs) -> Line {
@@ -167,7 +173,8 @@ fn measure(case: &Case, pairs: &Pairs) -> Result<Measured, NoSeparation> {
     let (at_a, at_b) = (case.pose_a.placement(), case.pose_b.placement());
     let separation = narrow_phase::separation(&case.a, &case.b, &at_a, &at_b, &goal)?;
     let micros = started.elapsed().as_secs_f64() * 1e6;
-    Ok(written(&separation, micros))
+    let listed = pairs.touching.and_then(|limit| touching::listed(case, limit, &out_of_time));
+    Ok(Measured { listed, ..written(&separation, micros) })
 }
 
 fn written(separation: &Separation, micros: f64) -> Measured {
@@ -185,6 +192,7 @@ fn written(separation: &Separation, micros: f64) -> Measured {
         termination: words::termination(termination),
         iterations: cost.gjk_iterations + cost.epa_iterations,
         micros,
+        listed: None,
     }
 }
 
@@ -227,6 +235,17 @@ mod tests {
         assert_eq!(answer["verdict"], "FREE");
         assert!((answer["signed_distance"].as_f64().unwrap() - 2.0).abs() < 1e-14);
         assert!((answer["witness"][0][2].as_f64().unwrap() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn touching_triangles_are_listed_where_there_are_any() {
+        let crossed = r#"{"a": {"type": "mesh", "params": {"vertices": [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 4, 1]], "triangles": [[0, 1, 3], [0, 1, 2]]}}, "pose_a": {"t": [0, 0, 0], "q": [1, 0, 0, 0]}, "b": {"type": "segment", "params": {"a": [1, 1, -1], "b": [1, 1.5, 1]}}, "pose_b": {"t": [0, 0, 0], "q": [1, 0, 0, 0]}}"#;
+        let answers = answers(&format!("{crossed}\n{BALLS}"), &["--touching", "-"]);
+        assert_eq!(answers[0]["touching"], serde_json::json!([[0, 0], [1, 0]]));
+        assert_eq!(answers[0]["truncated"], false);
+        assert!(answers[1].get("touching").is_none() && answers[1].get("truncated").is_none());
+        let cut = self::answers(crossed, &["--touching=1", "-"]);
+        assert_eq!((cut[0]["touching"].as_array().unwrap().len(), &cut[0]["truncated"]), (1, &Value::Bool(true)));
     }
 
     #[test]

@@ -14,10 +14,12 @@ mod invalid_shape;
 mod length;
 pub mod mesh_file;
 mod mesh_tree;
+mod oriented_box;
 mod pose;
 mod shape;
 pub mod tolerance;
 mod triangle_mesh;
+mod twin;
 pub mod vector;
 
 pub use aabb::Aabb;
@@ -26,10 +28,12 @@ pub use convex_hull::ConvexHull;
 pub use hull_surface::HullSurface;
 pub use invalid_shape::InvalidShape;
 pub use length::length;
-pub use mesh_tree::{MeshTree, TreeNode};
+pub use mesh_tree::{Content, MOST_LEVELS, MeshTree, NodeId, Nodes, Siblings};
+pub use oriented_box::{MOST_SKEW, OrientedBox, TwinBox};
 pub use pose::{InvalidPose, Placement, Pose, Quaternion};
 pub use shape::{Core, Shape};
 pub use triangle_mesh::TriangleMesh;
+pub use twin::{Twin, TwinVec3};
 
 /// A point, a direction or a difference of points.
 pub type Vec3 = nalgebra::Vector3<f64>;

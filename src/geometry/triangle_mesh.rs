@@ -12,6 +12,7 @@ pub struct TriangleMesh {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     tree: MeshTree,
+    bounds: Aabb,
     /// One vertex of each connected part of the surface.
     parts: Vec<u32>,
     solid: bool,
@@ -34,11 +35,11 @@ impl TriangleMesh {
                 return Err(InvalidShape::BadIndex { triangle: i, index, vertices: vertices.len() });
             }
         }
-        let bounds: Vec<Aabb> =
-            triangles.iter().map(|corners| Aabb::around(corners.map(|c| vertices[c as usize]))).collect();
-        let tree = MeshTree::new(&bounds);
+        let corners: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|c| vertices[c as usize])).collect();
+        let bounds = Aabb::around(corners.iter().flatten().copied());
+        let tree = MeshTree::new(&corners);
         let parts = connected_parts(&merged(&vertices), &triangles);
-        Ok(Self { vertices, triangles, tree, parts, solid: false })
+        Ok(Self { vertices, triangles, tree, bounds, parts, solid: false })
     }
 
     /// A solid body. Vertices at equal positions are taken as one (STL repeats each of them).
@@ -92,10 +93,10 @@ impl TriangleMesh {
         self.solid
     }
 
-    /// Bounds in the mesh's frame.
+    /// Bounds of the triangles in the mesh's frame.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        self.tree.nodes()[0].bounds
+        self.bounds
     }
 
     /// The mesh with its axes multiplied by `factors` (URDF scales meshes per axis). A mirrored solid keeps facing

@@ -1,16 +1,23 @@
 //! How far apart two shapes are, as a proved bracket.
 //!
-//! [`separation`] is the door. Behind it, top down: `union`, `pieces` and `walk` take meshes and compounds apart, `convex` runs GJK and EPA on
-//! a pair of cores, `unbounded` has the formula for half-spaces and planes. Below lie the Minkowski difference, its
-//! simplices and polytope, and the support functions.
+//! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the trees of
+//! meshes (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
+//! closed mesh, `convex` runs the solvers on a pair of cores, `unbounded` has the formula for half-spaces and planes. Below
+//! lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a second door, for all
+//! touching triangles.
 
+mod box_gaps;
 mod bracketing;
 mod convex;
+mod course;
 mod epa;
 mod frank_wolfe;
 mod gjk;
 mod goal;
+mod inside;
 mod ladder;
+mod least;
+mod leaves;
 mod minkowski;
 mod momentum;
 mod outcome;
@@ -28,12 +35,16 @@ mod smooth;
 mod solid;
 mod solver;
 mod support;
+mod touching;
+mod triangles;
 mod unbounded;
 mod union;
 mod walk;
+mod wall;
 mod witness;
 
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use separation::{NoSeparation, separation};
 pub use solver::{Solver, Unclaimed};
+pub use touching::{NoTriangles, Touching, TouchingPair, Within, touching_pairs};

@@ -6,7 +6,7 @@ use super::outcome::Separation;
 use super::support::radius;
 use super::unbounded::{self, Unbounded};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Aabb, Core, Part, Placement, Shape, TriangleMesh, length};
+use crate::geometry::{Aabb, Core, Placement, Shape, TriangleMesh, length};
 
 /// Something that has a place and is convex, unbounded, or a mesh: what is left when a compound is taken apart.
 #[derive(Clone, Copy)]
@@ -21,34 +21,58 @@ pub(super) struct Piece<'a> {
     pub part: u32,
 }
 
-/// The pieces of a placed shape, in order. `composed`: the poses of one of the two shapes' parts are composed with its own,
-/// which rounds in the placement of both.
-pub(super) fn pieces<'a>(shape: &'a Shape, at: &Placement, composed: bool) -> Vec<Piece<'a>> {
-    // Composing rounds no more than relating two poses does, which the error of a support value covers once.
-    let error = |reach: f64| if composed { SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * reach } else { 0.0 };
-    let Core::Compound(compound) = shape.core() else {
-        let reach = radius(shape.core()) + length(at.translation);
-        let (swept_radius, placement_error) = (shape.swept_radius(), error(reach));
-        return vec![Piece { shape, swept_radius, at: *at, placement_error, part: 0 }];
-    };
-    let piece = |(part, p): (u32, &'a Part)| {
-        let inner = p.pose.placement();
+/// The pieces of a placed shape, in order.
+pub(super) struct Pieces<'a> {
+    shape: &'a Shape,
+    at: Placement,
+    /// Whether the poses of one of the two shapes' parts are composed with its own, which rounds in the placement of both.
+    composed: bool,
+}
+
+impl<'a> Pieces<'a> {
+    pub fn new(shape: &'a Shape, at: Placement, composed: bool) -> Self {
+        Self { shape, at, composed }
+    }
+
+    /// The only piece of a shape that is no compound.
+    pub fn alone(shape: &'a Shape, at: Placement) -> Piece<'a> {
+        Self::new(shape, at, false).piece(0)
+    }
+
+    pub fn len(&self) -> usize {
+        if let Core::Compound(compound) = self.shape.core() { compound.parts().len() } else { 1 }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = Piece<'a>> {
+        (0..self.len()).map(|index| self.piece(index))
+    }
+
+    fn piece(&self, index: usize) -> Piece<'a> {
+        let (shape, at) = (self.shape, &self.at);
+        // Composing rounds no more than relating two poses does, which the error of a support value covers once.
+        let error = |reach: f64| if self.composed { SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * reach } else { 0.0 };
+        let Core::Compound(compound) = shape.core() else {
+            let reach = radius(shape.core()) + length(at.translation);
+            let (swept_radius, placement_error) = (shape.swept_radius(), error(reach));
+            return Piece { shape, swept_radius, at: *at, placement_error, part: 0 };
+        };
+        let part = &compound.parts()[index];
+        let inner = part.pose.placement();
         Piece {
-            shape: &p.shape,
-            swept_radius: p.shape.swept_radius() + shape.swept_radius(),
+            shape: &part.shape,
+            swept_radius: part.shape.swept_radius() + shape.swept_radius(),
             at: Placement { rotation: at.rotation * inner.rotation, translation: at.point(inner.translation) },
-            placement_error: error(radius(p.shape.core()) + length(inner.translation) + length(at.translation)),
-            part,
+            placement_error: error(radius(part.shape.core()) + length(inner.translation) + length(at.translation)),
+            part: index as u32,
         }
-    };
-    (0u32..).zip(compound.parts()).map(piece).collect()
+    }
 }
 
 pub(super) fn mesh_of<'a>(piece: &Piece<'a>) -> Option<&'a TriangleMesh> {
     if let Core::Mesh(mesh) = piece.shape.core() { Some(mesh) } else { None }
 }
 
-fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
+pub(super) fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
     let (normal, offset, thin) = match piece.shape.core() {
         Core::HalfSpace { normal, offset } => (*normal, *offset, false),
         Core::Plane { normal, offset } => (*normal, *offset, true),
@@ -94,7 +118,7 @@ fn whole<'a>(piece: &'a Piece) -> Convex<'a> {
 }
 
 /// The same answer with the sides exchanged.
-fn swapped(s: Separation) -> Separation {
+pub(super) fn swapped(s: Separation) -> Separation {
     Separation {
         normal: -s.normal,
         point_on_a: s.point_on_b,

@@ -3,7 +3,7 @@
 use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
-use super::pieces::pieces;
+use super::pieces::Pieces;
 use super::solver::{Solver, Unclaimed};
 use super::support::is_convex;
 use super::union;
@@ -51,8 +51,8 @@ pub fn separation(
     }
     let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
     let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));
-    let pieces_a = pieces(a, &own_frame, composed);
-    let pieces_b = pieces(b, &Placement::relative(at_a, at_b), composed);
+    let pieces_a = Pieces::new(a, own_frame, composed);
+    let pieces_b = Pieces::new(b, Placement::relative(at_a, at_b), composed);
     let found =
         union::separation(&pieces_a, &pieces_b, goal).ok_or(NoSeparation::Unbounded { a: a.kind(), b: b.kind() })?;
     let point_on_a = at_a.point(found.point_on_a);

@@ -1,10 +1,13 @@
 //! Solid meshes: what lies inside collides, though it may touch no triangle.
 
 use super::goal::Goal;
+use super::inside::is_inside;
 use super::outcome::{Bracket, Separation, Termination};
-use super::pieces::{Piece, least_of_pieces, mesh_of};
-use super::support::{is_convex, support};
-use crate::geometry::{Aabb, Core, Placement, TriangleMesh, Vec3, length};
+use super::pieces::{Piece, Pieces, least_of_pieces, mesh_of};
+use super::support::{is_convex, radius, support};
+use super::walk::walk;
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::{Aabb, Core, Mat3, Placement, Shape, TriangleMesh, Vec3, length};
 
 /// The separation of the surfaces of two pieces, corrected where one is wholly inside the other and that is solid.
 ///
@@ -21,8 +24,14 @@ pub(super) fn with_containment(surfaces: Separation, a: &Piece, b: &Piece, goal:
         let bracket = Bracket { lower, upper: surfaces.bracket.upper };
         return Separation { bracket, termination: Termination::TimeLimit, ..surfaces };
     }
-    if !(contains(a, b) || contains(b, a)) {
-        return surfaces;
+    let gap = surfaces.bracket.lower;
+    match (contains(a, b, gap), contains(b, a, gap)) {
+        (Some(false), Some(false)) => return surfaces,
+        (Some(true), _) | (_, Some(true)) => {}
+        (None, _) | (_, None) => {
+            let bracket = Bracket { lower, upper: surfaces.bracket.upper };
+            return Separation { bracket, termination: Termination::RoundingFloor, ..surfaces };
+        }
     }
     let bracket = Bracket { lower, upper: -surfaces.bracket.lower };
     let signed_distance = (-surfaces.signed_distance).clamp(bracket.lower, bracket.upper);
@@ -35,32 +44,43 @@ fn may_contain(piece: &Piece) -> bool {
     mesh_of(piece).is_some_and(TriangleMesh::is_solid)
 }
 
-/// Whether `outer` is a solid mesh with a part of `inner` in it. Their surfaces are apart, so one point tells for all of a
-/// connected part.
-fn contains(outer: &Piece, inner: &Piece) -> bool {
-    let Some(mesh) = mesh_of(outer).filter(|mesh| mesh.is_solid()) else { return false };
+/// Whether `outer` is a solid mesh with a part of `inner` in it; none where that is too close to tell. Their surfaces are `gap` apart, so
+/// one point tells for all of a connected part.
+fn contains(outer: &Piece, inner: &Piece, gap: f64) -> Option<bool> {
+    let Some(mesh) = mesh_of(outer).filter(|mesh| mesh.is_solid()) else { return Some(false) };
     let inner_in_outer = Placement::relative(&outer.at, &inner.at);
+    let extent = radius(outer.shape.core()) + radius(inner.shape.core()) + length(inner_in_outer.translation);
+    let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + outer.placement_error + inner.placement_error;
     let is_in = |point: Vec3| {
         let point = inner_in_outer.point(point);
-        mesh.bounds().contains(&Aabb { min: point, max: point }) && is_inside(mesh, point)
+        // A point as stored is on the same side as the true one, if no surface comes as near to it as their difference.
+        if gap <= 2.0 * error && !is_clear(outer, point, 2.0 * error) {
+            return None;
+        }
+        Some(mesh.bounds().contains(&Aabb { min: point, max: point }) && is_inside(mesh, point))
     };
     let core = inner.shape.core();
     if let Core::Mesh(parts) = core {
-        return parts.parts().any(is_in);
+        // One part inside is enough, whatever is unknown of the others.
+        let mut known = Some(false);
+        for part in parts.parts() {
+            match is_in(part) {
+                Some(true) => return Some(true),
+                Some(false) => {}
+                None => known = None,
+            }
+        }
+        return known;
     }
-    is_convex(core) && is_in(support(core, Vec3::z()))
+    if is_convex(core) { is_in(support(core, Vec3::z())) } else { Some(false) }
 }
 
-/// Whether a point, in the mesh's frame and not on its surface, is inside a solid mesh: by the sum of the solid angles
-/// of its triangles (van Oosterom and Strackee 1983), which is 4 pi inside and 0 outside.
-fn is_inside(mesh: &TriangleMesh, point: Vec3) -> bool {
-    // Directions to the corners: lengths cancel, and products of them could overflow.
-    let solid_angle = |i: usize| {
-        let [a, b, c] = mesh.triangle(i).map(|v| (v - point) / length(v - point));
-        let volume = a.dot(&b.cross(&c));
-        let denominator = 1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a);
-        2.0 * libm::atan2(volume, denominator)
-    };
-    let total: f64 = (0..mesh.triangles().len()).map(solid_angle).sum();
-    total > 2.0 * std::f64::consts::PI
+/// Whether a point in the frame of a mesh is farther than that from its triangles.
+fn is_clear(mesh: &Piece, point: Vec3, distance: f64) -> bool {
+    let frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
+    let surface = Piece { at: frame, swept_radius: 0.0, placement_error: 0.0, ..*mesh };
+    let shape = Shape::point();
+    let there = Pieces::alone(&shape, Placement { translation: point, ..frame });
+    let goal = Goal { margin: distance, ..Goal::verdict() };
+    walk(&surface, &there, &goal).is_some_and(|found| found.bracket.lower > distance)
 }

@@ -1,119 +1,132 @@
-//! A mesh against a convex piece, a half-space or another mesh: down the trees, nearest boxes first.
+//! A mesh against a convex piece or another mesh: down the trees, depth first, towards what looks nearest.
+//!
+//! A pair of nodes is opened when the boxes do not prove that it cannot change the answer: the larger of the two is
+//! replaced by its children, and of the two new pairs the one that looks nearer comes first. So the first leaves
+//! reached are near one another (or cross, in an overlap), and of what waits on the way back most is left out. The stack
+//! needs no more room than both trees have levels, so a walk allocates nothing; best-first order would open a tenth
+//! less, and its queue would cost more than that.
 
-use std::borrow::Cow;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::f64::consts::PI;
 
+use super::course::{Course, Next, Side};
 use super::goal::Goal;
-use super::outcome::Separation;
-use super::pieces::{Piece, least_of_boxes, mesh_of, simple_pair};
-use super::union::Least;
-use crate::geometry::{Aabb, Placement, Shape, TriangleMesh};
+use super::least::Least;
+use super::leaves::{Cores, Leaves};
+use super::outcome::{Bracket, Separation, Termination};
+use super::pieces::{Piece, swapped, unbounded_of};
+use super::support::unit;
+use super::wall;
+use crate::geometry::{MOST_LEVELS, NodeId, OrientedBox, Siblings, Vec3, length};
 
-/// Opens pairs of nodes in the order of what their boxes prove, least signed distance first, until what is left cannot
-/// matter.
+/// The least separation of what is in two pieces, at least one of them a mesh; as far as the goal needs it.
 pub(super) fn walk(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separation> {
-    let mut least = Least::new(goal);
-    let (side_a, side_b) = (Side::new(a), Side::new(b));
-    let b_in_a = Placement::relative(&a.at, &b.at);
-    let pair =
-        |na, nb| Open { lower: least_of_boxes(a, side_a.bounds(na), b, side_b.bounds(nb), &b_in_a), a: na, b: nb };
-    let mut open = BinaryHeap::from([pair(0, 0)]);
-    while let Some(Open { lower, a: na, b: nb }) = open.pop() {
-        if least.leaves_out(lower) {
-            break; // The bounds of what is left are larger still.
-        }
-        least.cost.nodes += 1;
-        let size = |side: &Side, n: usize| side.bounds(n).map_or(f64::INFINITY, |b| b.half_area());
-        match (side_a.children(na), side_b.children(nb)) {
-            (None, None) => leaf_pair(&side_a, na, &side_b, nb, &mut least),
-            // The larger one is opened: its boxes say least.
-            (Some(children), other) if other.is_none() || size(&side_a, na) >= size(&side_b, nb) => {
-                open.extend(children.map(|child| pair(child, nb)));
-            }
-            (_, Some(children)) => open.extend(children.map(|child| pair(na, child))),
-            (Some(_), None) => unreachable!("covered by the second arm"),
-        }
-    }
-    least.finish()
-}
-
-fn leaf_pair(a: &Side, na: usize, b: &Side, nb: usize, least: &mut Least) {
-    for &i in a.items(na) {
-        let (shape_a, subshape_a) = a.item(i);
-        let item_a = Piece { shape: &shape_a, ..*a.piece };
-        for &j in b.items(nb) {
-            let (shape_b, subshape_b) = b.item(j);
-            let item_b = Piece { shape: &shape_b, ..*b.piece };
-            if let Some(found) = simple_pair(&item_a, &item_b, &least.goal()) {
-                least.take(Separation { subshape_a, subshape_b, ..found });
-            }
+    match (unbounded_of(a), unbounded_of(b)) {
+        (None, Some(wall)) => wall::walk(a, wall, goal),
+        (Some(wall), None) => wall::walk(b, wall, goal).map(swapped),
+        (Some(_), Some(_)) => None,
+        (None, None) => {
+            let alone = |piece: &Piece| Some(Siblings::alone(&OrientedBox::upright(&piece.shape.core().bounds()?)));
+            let (alone_a, alone_b) = (alone(a)?, alone(b)?);
+            let course = Course::new(Side::new(a, &alone_a), Side::new(b, &alone_b));
+            Walk { course: &course, least: Least::new(goal), normal: None }.run()
         }
     }
 }
 
-/// A pair of tree nodes to be opened, with a lower bound of the signed distance of what is in them. A piece without a tree is its own single node.
-struct Open {
+/// Pairs that wait at most: each pair on the way down leaves one behind, and each level of either tree is opened once.
+pub(super) const ROOM: usize = 2 * MOST_LEVELS + 1;
+/// Nodes opened between two questions whether time is over: reading a clock costs as much as opening a node.
+pub(super) const NODES_PER_STOP: u64 = 16;
+
+/// A pair of nodes that waits to be opened, with a lower bound of the signed distance of what is in them.
+#[derive(Clone, Copy)]
+struct Waiting {
     lower: f64,
-    a: usize,
-    b: usize,
+    a: NodeId,
+    b: NodeId,
 }
 
-impl PartialEq for Open {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
+struct Walk<'a, 'g> {
+    course: &'a Course<'a>,
+    least: Least<'g>,
+    /// From A to B at the nearest pair so far, in both frames.
+    normal: Option<[Vec3; 2]>,
 }
 
-impl Eq for Open {}
-
-impl Ord for Open {
-    /// Least bound first; equals by their indices.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.lower.total_cmp(&self.lower).then((other.a, other.b).cmp(&(self.a, self.b)))
-    }
-}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// One side of a walk.
-struct Side<'a> {
-    piece: &'a Piece<'a>,
-    mesh: Option<&'a TriangleMesh>,
-}
-
-impl<'a> Side<'a> {
-    fn new(piece: &'a Piece<'a>) -> Self {
-        Self { piece, mesh: mesh_of(piece) }
-    }
-
-    /// Bounds of a node without swept radius, in the piece's frame; none when unbounded.
-    fn bounds(&self, node: usize) -> Option<Aabb> {
-        self.mesh.map_or_else(|| self.piece.shape.core().bounds(), |mesh| Some(mesh.tree().nodes()[node].bounds))
-    }
-
-    fn children(&self, node: usize) -> Option<[usize; 2]> {
-        self.mesh.and_then(|mesh| mesh.tree().nodes()[node].children())
-    }
-
-    /// What a leaf holds: the triangles of a mesh, or the piece itself.
-    fn items(&self, node: usize) -> &[u32] {
-        self.mesh.map_or(&[0], |mesh| mesh.tree().items(&mesh.tree().nodes()[node]))
-    }
-
-    /// One of the items, as a shape and its number.
-    fn item(&self, index: u32) -> (Cow<'a, Shape>, u32) {
-        match self.mesh {
-            Some(mesh) => {
-                let [a, b, c] = mesh.triangle(index as usize);
-                let triangle = Shape::triangle(a, b, c).expect("the vertices of a mesh were checked");
-                (Cow::Owned(triangle), index)
+impl<'g> Walk<'_, 'g> {
+    fn run(mut self) -> Option<Separation> {
+        let [lower, _] = self.course.bounds(&self.course.roots(), None, self.least.threshold()).lower;
+        let root = Waiting { lower, a: NodeId::ROOT, b: NodeId::ROOT };
+        let mut waiting = [root; ROOM];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let pair = waiting[count];
+            if self.least.leaves_out(pair.lower) {
+                continue;
             }
-            None => (Cow::Borrowed(self.piece.shape), self.piece.part),
+            if self.least.cost.nodes.is_multiple_of(NODES_PER_STOP)
+                && self.least.has_witness()
+                && self.least.must_stop()
+            {
+                waiting[..=count].iter().for_each(|left| self.least.put_aside(left.lower));
+                break;
+            }
+            let (opened, children) = match self.course.open(pair.a, pair.b) {
+                Next::Children(opened, children) => (opened, children),
+                Next::Leaves(a, b) => {
+                    self.leaves(a, b);
+                    continue;
+                }
+            };
+            self.least.cost.nodes += 1;
+            let bounds = self.course.bounds(&opened, self.normal, self.least.threshold());
+            let nearer = usize::from(bounds.order[1] < bounds.order[0]);
+            for child in [1 - nearer, nearer] {
+                // What holds for the parents holds for the children.
+                let lower = bounds.lower[child].max(pair.lower);
+                if !self.least.leaves_out(lower) {
+                    let (a, b) = children[child];
+                    waiting[count] = Waiting { lower, a, b };
+                    count += 1;
+                }
+            }
         }
+        if !self.least.has_witness() {
+            let witness = self.any_witness();
+            self.least.take(witness);
+        }
+        self.least.finish()
+    }
+
+    fn leaves(&mut self, a: usize, b: usize) {
+        match self.course.leaves(a, b, &self.least.goal(), self.least.threshold(), self.normal) {
+            Leaves::Farther(lower) => self.least.put_aside(lower),
+            Leaves::Known(found) => {
+                let (apart, normal) = (found.bracket.lower > 0.0, found.normal);
+                if self.least.take(found) && apart {
+                    let in_a = self.course.a.piece.at.direction_into(normal);
+                    self.normal = Some([in_a, self.course.b_in_a.direction_into(in_a)]);
+                }
+            }
+        }
+    }
+
+    /// What nobody needs to know better: some pair of points, where boxes decided before any leaf was reached.
+    fn any_witness(&self) -> Separation {
+        let (course, lower) = (self.course, self.least.lower());
+        let points = [course.a.any_point(), course.b_in_a.point(course.b.any_point())];
+        let across = points[1] - points[0];
+        // The slack of boxes is more than that of points, and has the radii in it.
+        let error = course.slack - course.radii;
+        let upper = length(across) + error;
+        let bracket = Bracket { lower, upper: lower.max(upper - course.radii + error) };
+        let direction = unit(across).unwrap_or_else(Vec3::x);
+        let estimate = lower + course.radii;
+        course.placed(
+            &Cores { lower: estimate, upper, estimate, direction, points, error },
+            bracket,
+            Termination::Decided,
+        )
     }
 }

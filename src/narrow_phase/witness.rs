@@ -25,8 +25,12 @@ pub(super) fn normal_error(lower: f64, upper: f64) -> f64 {
 /// core by what that vector is short of w, the point of the difference. And w is no farther from x* than the root of `U^2 - L^2`.
 pub(super) fn point_error(found: &Epa, distance: f64, error: f64) -> f64 {
     let short = (found.nearest.w - found.direction * distance).norm();
-    let from_nearest = if found.lower > 0.0 { gap(found.lower, found.upper) } else { 0.0 };
-    short + from_nearest + 2.0 * error
+    short + from_nearest(found.lower, found.upper) + 2.0 * error
+}
+
+/// How far a point of the difference no farther than `upper` may be from x*, when the cores are proved apart.
+pub(super) fn from_nearest(lower: f64, upper: f64) -> f64 {
+    if lower > 0.0 { gap(lower, upper) } else { 0.0 }
 }
 
 /// The root of `U^2 - L^2`, as a product that does not cancel. One root, so that powers of two scale it without rounding;

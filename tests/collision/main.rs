@@ -6,6 +6,7 @@ mod extremes;
 mod hard_cases;
 mod known_failures;
 mod laws;
+mod meshes;
 mod oracle;
 mod random_pairs;
 mod samples;
