@@ -123,10 +123,9 @@ impl<'g> Walk<'_, 'g> {
         let bracket = Bracket { lower, upper: lower.max(upper - course.radii + error) };
         let direction = unit(across).unwrap_or_else(Vec3::x);
         let estimate = lower + course.radii;
-        course.placed(
-            &Cores { lower: estimate, upper, estimate, direction, points, error },
-            bracket,
-            Termination::Decided,
-        )
+        let cores = Cores { lower: estimate, upper, estimate, direction, points, error };
+        let placed = course.placed(&cores, bracket, Termination::Decided);
+        // Neither the points nor the direction have anything to do with the nearest ones.
+        Separation { normal_error: PI, point_error: placed.point_error + 2.0 * upper, ..placed }
     }
 }
