@@ -130,6 +130,7 @@ fn a_power_of_two_scales_every_output_bit_for_bit() {
             signed_distance: one.signed_distance * factor,
             point_on_a: one.point_on_a * factor,
             point_on_b: one.point_on_b * factor,
+            point_error: one.point_error * factor,
             ..one
         };
         assert_eq!(expected, other, "times {factor}\n  A {:?}\n  B {:?}", pair.a.body, pair.b.body);
