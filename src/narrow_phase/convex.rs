@@ -8,6 +8,7 @@ use super::ladder;
 use super::minkowski::Difference;
 use super::momentum::Steering;
 use super::outcome::{Cost, Separation, Termination};
+use super::pair_cache::PairCache;
 use super::polytope::inner_ball;
 use super::segments;
 use super::support::radius;
@@ -27,7 +28,14 @@ pub(super) struct Convex<'a> {
 }
 
 /// What is known about A and B when the goal is reached.
+#[inline]
 pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
+    separation_again(a, b, goal, &mut PairCache::new())
+}
+
+/// The same, starting where the last query of the pair ended.
+#[inline]
+pub(super) fn separation_again(a: Convex, b: Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
     if let Some(found) = segments::separation(&a, &b, goal) {
         return found;
     }
@@ -35,17 +43,24 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
     let extent = radius(a.core) + radius(b.core) + length(b_in_a.translation);
     let placement_error = a.placement_error + b.placement_error;
     if !(UNSCALED_EXTENT.0..=UNSCALED_EXTENT.1).contains(&extent) {
-        return scaled_separation(&a, &b, goal, b_in_a, extent);
+        return scaled_separation(&a, &b, goal, b_in_a, extent, cache);
     }
     // Below the normal numbers roundings are absolute.
     let denormal = 64.0 * f64::MIN_POSITIVE;
     let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal);
-    solved(&a, &b, goal, difference, 1.0)
+    solved(&a, &b, goal, difference, 1.0, cache)
 }
 
 /// Pairs of extreme size are brought near 1 by a power of two, which rounds nothing.
 #[cold]
-fn scaled_separation(a: &Convex, b: &Convex, goal: &Goal, b_in_a: Placement, extent: f64) -> Separation {
+fn scaled_separation(
+    a: &Convex,
+    b: &Convex,
+    goal: &Goal,
+    b_in_a: Placement,
+    extent: f64,
+    cache: &mut PairCache,
+) -> Separation {
     let scale = scale_of(extent);
     let scaled = |core: &Core| core.scaled(scale).expect("no larger than the extent, which is scaled to 1");
     let (core_a, core_b) = (scaled(a.core), scaled(b.core));
@@ -54,15 +69,24 @@ fn scaled_separation(a: &Convex, b: &Convex, goal: &Goal, b_in_a: Placement, ext
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
     let extent = radius(&core_a) + radius(&core_b) + length(b_in_a.translation);
-    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error), scale)
+    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error), scale, cache)
 }
 
 /// What the goal's solver finds out about the difference, as an answer about the shapes.
 #[inline]
-fn solved(a: &Convex, b: &Convex, goal: &Goal, mut difference: Difference, scale: f64) -> Separation {
+fn solved(
+    a: &Convex,
+    b: &Convex,
+    goal: &Goal,
+    mut difference: Difference,
+    scale: f64,
+    cache: &mut PairCache,
+) -> Separation {
     let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
     let mut cost = Cost { pairs: 1, ..Cost::default() };
+    difference.memory = *cache;
     let found = ladder::solve(&mut difference, &target, &mut cost);
+    *cache = difference.memory;
     place(&found, a, &target, &difference, cost)
 }
 

@@ -14,9 +14,11 @@
 //! - the cap on rounds is reached, or the caller's time.
 
 use super::bracketing::Target;
+use super::goal::Depth;
 use super::minkowski::Difference;
 use super::momentum::Steering;
 use super::outcome::Cost;
+use super::pair_cache::rebuilt;
 use super::simplex::{Simplex, Step};
 use super::support::unit;
 use crate::geometry::Vec3;
@@ -57,7 +59,8 @@ pub(super) enum End {
     OutOfTime,
 }
 
-/// Runs GJK on `difference`, starting along `start`, a direction from the origin to it.
+/// Runs GJK on `difference`, starting along `start`, a direction from the origin to it, or with the simplex of the last
+/// query of the pair, and remembers where it ends.
 #[inline]
 pub(super) fn gjk(
     difference: &mut Difference,
@@ -66,18 +69,52 @@ pub(super) fn gjk(
     target: &Target,
     cost: &mut Cost,
 ) -> Gjk {
+    let found = search(difference, start, &mut steering, target, cost);
+    let vertices =
+        if matches!(found.end, End::Enclosed) { &found.simplex.enclosing() } else { found.simplex.vertices() };
+    difference.memory.note(vertices, found.direction);
+    found
+}
+
+/// From a simplex that was remembered, or from the first vertex along `start`.
+#[inline]
+fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
     let direction = unit(start).unwrap_or_else(Vec3::x);
+    // To be told apart again a pair needs no more than the direction that told it last time.
+    let is_axis_enough = target.goal.depth == Depth::Verdict && difference.memory.len < 4;
+    if difference.memory.len > 0
+        && !is_axis_enough
+        && let Some((simplex, encloses)) = rebuilt(&difference.remembered(), difference.extent)
+    {
+        let upper = simplex.x.norm() + error;
+        let end = if encloses { End::Enclosed } else { End::Limit };
+        return Gjk { lower: f64::NEG_INFINITY, direction, simplex, upper, end };
+    }
     let first = difference.lowest(direction);
     cost.supports += 1;
-    let lower = direction.dot(&first.w) - error;
-    let upper = first.w.norm() + error;
-    let mut best = Gjk { lower, direction, simplex: Simplex::point(first), upper, end: End::Limit };
+    let (lower, upper) = (direction.dot(&first.w) - error, first.w.norm() + error);
+    Gjk { lower, direction, simplex: Simplex::point(first), upper, end: End::Limit }
+}
+
+#[inline]
+fn search(
+    difference: &mut Difference,
+    start: Vec3,
+    steering: &mut impl Steering,
+    target: &Target,
+    cost: &mut Cost,
+) -> Gjk {
+    let error = difference.error;
+    let mut best = first(difference, start, target, cost);
+    if matches!(best.end, End::Enclosed) {
+        return best;
+    }
     if let Some(end) = settled(&best, target) {
         best.end = end;
         return best;
     }
-    let mut last = first.w;
+    let mut last = best.simplex.x;
     for _ in 0..MAX_ITERATIONS {
         if target.must_stop() {
             best.end = End::OutOfTime;

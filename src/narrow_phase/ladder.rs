@@ -20,7 +20,7 @@ use crate::geometry::Core;
 pub(super) fn solve(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
     match target.goal.solver {
         Solver::Default => by_default(difference, target, cost),
-        Solver::Gjk => by_gjk(difference, difference.centers(), Plain, target, cost),
+        Solver::Gjk => by_gjk(difference, difference.start(), Plain, target, cost),
         chosen @ (Solver::FrankWolfe
         | Solver::GjkPolyak
         | Solver::GjkNesterov
@@ -38,7 +38,9 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
     {
         return found;
     }
-    if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b) {
+    if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b)
+        && difference.memory.len == 0
+    {
         // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's.
         let (a, b) = (*a, *b);
         let is_verdict = target.goal.depth == Depth::Verdict;
@@ -48,7 +50,7 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
             return answer;
         }
     }
-    by_gjk(difference, difference.centers(), Plain, target, cost)
+    by_gjk(difference, difference.start(), Plain, target, cost)
 }
 
 /// Apart from the common way, so that it does not grow by what is seldom asked for.

@@ -3,11 +3,14 @@
 //! A and B meet where C holds the origin, and the signed distance of A and B is that of the origin to C. Everything
 //! is in A's frame, so that nothing depends on where the pair is in the world.
 
+use arrayvec::ArrayVec;
+
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::vector::opposite;
+use crate::geometry::vector::{is_same, opposite};
 use crate::geometry::{Core, Placement, Vec3};
 
-use super::support::{NO_HINT, center, farthest};
+use super::pair_cache::PairCache;
+use super::support::{NO_HINT, center, corner, farthest};
 
 /// A vertex of the difference with the point of A it came from. Metres, frame of A.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +37,8 @@ pub(super) struct Difference<'a> {
     /// The corners found last, and the direction, where a search along edges may start.
     hints: [u32; 2],
     last: Vec3,
+    /// Where the last query of the pair ended, and then where this one did.
+    pub memory: PairCache,
 }
 
 impl<'a> Difference<'a> {
@@ -42,7 +47,7 @@ impl<'a> Difference<'a> {
     #[inline]
     pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, extent: f64, placement_error: f64) -> Self {
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
-        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros() }
+        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros(), memory: PairCache::new() }
     }
 
     /// The vertex where `direction . c` is least, for a unit direction.
@@ -55,6 +60,21 @@ impl<'a> Difference<'a> {
         let (on_b, corner_b) = farthest(self.b, self.b_in_a.direction_into(direction), hint_b);
         (self.hints, self.last) = ([corner_a, corner_b], direction);
         Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [corner_a, corner_b] }
+    }
+
+    /// The vertices that are remembered, where the cores have corners.
+    pub fn remembered(&self) -> ArrayVec<Vertex, 4> {
+        let vertex = |&[of_a, of_b]: &[u32; 2]| {
+            let (on_a, on_b) = (corner(self.a, of_a)?, corner(self.b, of_b)?);
+            Some(Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [of_a, of_b] })
+        };
+        self.memory.corners[..self.memory.len].iter().map_while(vertex).collect()
+    }
+
+    /// The direction that is remembered, if any, else the first guess.
+    #[inline]
+    pub fn start(&self) -> Vec3 {
+        if is_same(self.memory.direction, Vec3::zeros()) { self.centers() } else { self.memory.direction }
     }
 
     /// The cores, and the place of the second in the frame of the first.

@@ -21,6 +21,7 @@ mod leaves;
 mod minkowski;
 mod momentum;
 mod outcome;
+mod pair_cache;
 mod pieces;
 mod polytope;
 mod qp;
@@ -45,6 +46,7 @@ mod witness;
 
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};
-pub use separation::{NoSeparation, separation};
+pub use pair_cache::PairCache;
+pub use separation::{NoSeparation, separation, separation_again};
 pub use solver::{Solver, Unclaimed};
 pub use touching::{NoTriangles, Touching, TouchingPair, Within, touching_pairs};

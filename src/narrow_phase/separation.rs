@@ -3,6 +3,7 @@
 use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
+use super::pair_cache::PairCache;
 use super::pieces::Pieces;
 use super::solver::{Solver, Unclaimed};
 use super::support::is_convex;
@@ -41,13 +42,29 @@ pub fn separation(
     at_b: &Placement,
     goal: &Goal,
 ) -> Result<Separation, NoSeparation> {
+    separation_again(a, b, at_a, at_b, goal, &mut PairCache::new())
+}
+
+/// The same for a pair that was asked about before, in places nearby: the search starts where the last one ended, which
+/// saves most of it. `cache` is the caller's, one for each pair; a new one knows nothing. Only pairs of convex shapes use it.
+///
+/// # Errors
+/// As [`separation`].
+pub fn separation_again(
+    a: &Shape,
+    b: &Shape,
+    at_a: &Placement,
+    at_b: &Placement,
+    goal: &Goal,
+    cache: &mut PairCache,
+) -> Result<Separation, NoSeparation> {
     if goal.solver != Solver::Default {
         goal.solver.claims(a, b)?;
     }
     if is_convex(a.core()) && is_convex(b.core()) {
         let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
         let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
-        return Ok(convex::separation(one, other, goal));
+        return Ok(convex::separation_again(one, other, goal, cache));
     }
     let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
     let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));

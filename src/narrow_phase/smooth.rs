@@ -72,7 +72,7 @@ fn curvature(core: &Core, n: Vec3, p: Vec3, u: Vec3) -> Vec3 {
 pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target, cost: &mut Cost) -> Option<Epa> {
     let error = difference.error;
     // From the origin to C = A - B: the opposite of n.
-    let mut direction = unit(difference.centers())?;
+    let mut direction = unit(difference.start())?;
     // Where the widest gap so far was met, and the step that was taken from there.
     let (mut widest, mut base, mut forward) = (f64::NEG_INFINITY, direction, Vec3::zeros());
     for _ in 0..MAX_STEPS {
@@ -83,6 +83,7 @@ pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target
         let (lower, upper) = (gap - error, vertex.w.norm() + error);
         let bracket = target.bracket(lower, upper);
         let found = |termination| Some(Epa { lower, upper, direction, nearest: vertex, termination });
+        difference.memory.direction = direction;
         if target.is_met(&bracket) {
             return found(Termination::Converged);
         }

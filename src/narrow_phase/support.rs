@@ -166,6 +166,31 @@ fn first_farthest(points: &[Vec3], d: Vec3) -> (Vec3, u32) {
     (points[best], best as u32)
 }
 
+/// A corner by the number that [`farthest`] gave it; none where there is no such corner.
+pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
+    let n = number as usize;
+    match core {
+        Core::Cuboid { half_extents: h } => {
+            let signed = |axis: usize| if n >> axis & 1 == 1 { -h[axis] } else { h[axis] };
+            (n < 8).then(|| Vec3::new(signed(0), signed(1), signed(2)))
+        }
+        Core::Convex(hull) => hull.points().get(n).copied(),
+        Core::Triangle(corners) => corners.get(n).copied(),
+        Core::Segment(ends) => ends.get(n).copied(),
+        Core::AxialSegment { half_length } => {
+            (n < 2).then(|| Vec3::new(0.0, 0.0, if n == 1 { -half_length } else { *half_length }))
+        }
+        Core::Point => (n == 0).then(Vec3::zeros),
+        Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_) => None,
+    }
+}
+
 /// Middle of the core's bounds.
 pub(super) fn center(core: &Core) -> Vec3 {
     match core {
