@@ -16,4 +16,5 @@ mod states;
 mod touching;
 mod words;
 
+pub use case::{Case, read_line};
 pub use command::run;

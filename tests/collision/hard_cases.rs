@@ -22,8 +22,7 @@ pub struct HardCase {
 }
 
 pub fn hard_cases() -> Vec<HardCase> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/hard.jsonl");
-    let text = std::fs::read_to_string(file).expect("the corpus is part of the sources");
+    let text = include_str!("../data/hard.jsonl");
     text.lines().map(|line| case(&serde_json::from_str(line).expect("a line is JSON"))).collect()
 }
 

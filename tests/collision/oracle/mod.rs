@@ -17,6 +17,7 @@ pub mod double_double;
 pub mod exhaustive;
 mod expanding_polytope;
 mod nearest_point;
+#[cfg(test)]
 mod tests;
 mod truth;
 pub mod vector;
