@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use clearance::narrow_phase::{Accuracy, Depth, Goal};
+use clearance::narrow_phase::{Accuracy, Depth, Goal, Solver};
 
 use crate::hard_cases::hard_cases;
 use crate::oracle::double_double::Dd;
@@ -26,6 +26,7 @@ struct Tally {
     questions: usize,
     kinds: BTreeMap<&'static str, usize>,
     regimes: BTreeMap<&'static str, usize>,
+    solvers: BTreeMap<&'static str, usize>,
     swept: usize,
     violations: Vec<String>,
 }
@@ -35,21 +36,20 @@ impl Tally {
         self.pairs += other.pairs;
         self.questions += other.questions;
         self.swept += other.swept;
-        for (kind, count) in other.kinds {
-            *self.kinds.entry(kind).or_default() += count;
-        }
-        for (regime, count) in other.regimes {
-            *self.regimes.entry(regime).or_default() += count;
+        let counts =
+            [(&mut self.kinds, other.kinds), (&mut self.regimes, other.regimes), (&mut self.solvers, other.solvers)];
+        for (mine, theirs) in counts {
+            theirs.into_iter().for_each(|(name, count)| *mine.entry(name).or_default() += count);
         }
         self.violations.extend(other.violations);
     }
 
     fn report(&self) -> String {
-        let Self { pairs, questions, swept, kinds, regimes, violations } = self;
+        let Self { pairs, questions, swept, kinds, regimes, solvers, violations } = self;
         let wrong = violations.len();
         format!(
             "{pairs} pairs ({swept} with a swept core), {questions} questions, {wrong} violations\n\
-             kinds: {kinds:?}\nregimes: {regimes:?}"
+             kinds: {kinds:?}\nregimes: {regimes:?}\nother solvers: {solvers:?}"
         )
     }
 }
@@ -82,7 +82,12 @@ fn check(pair: &Pair, number: usize, tally: &mut Tally) {
         }
     };
     // A third is asked for the least width, which costs the oracle most.
-    let goals = if number.is_multiple_of(3) { vec![exact, full, other] } else { vec![full, other] };
+    let mut goals = if number.is_multiple_of(3) { vec![exact, full, other] } else { vec![full, other] };
+    let solver = Solver::ALL[number / 3 % Solver::ALL.len()];
+    if solver != Solver::Default && solver.claims(&pair.a.shape, &pair.b.shape).is_ok() {
+        *tally.solvers.entry(solver.name()).or_default() += 1;
+        goals.push(Goal { solver, ..full });
+    }
     let answers: Vec<_> = goals.iter().map(|goal| (goal, ask(&pair.a, &pair.b, goal))).collect();
     let narrowest = answers.iter().map(|(_, found)| found.bracket.width()).fold(f64::INFINITY, f64::min);
     let truth = truth(&pair.a.body, &pair.b.body, 1e-3 * narrowest, 400);
@@ -145,6 +150,9 @@ fn assert_sound(tally: &Tally) {
     for regime in REGIMES.into_iter().filter(|regime| *regime != "coarse truth") {
         assert!(tally.regimes.get(regime).is_some_and(|count| *count > tally.pairs / 50), "{regime}: {report}");
     }
+    let reached = |solver: Solver| tally.solvers.get(solver.name()).is_some_and(|count| *count > tally.pairs / 200);
+    let missing: Vec<_> = Solver::ALL.into_iter().filter(|s| *s != Solver::Default && !reached(*s)).collect();
+    assert!(missing.is_empty(), "{missing:?} hardly asked: {report}");
     // The oracle must have been sharp enough to mean something.
     let coarse = tally.regimes.get("coarse truth").copied().unwrap_or(0);
     assert!(coarse < tally.pairs / 25, "{coarse} coarse: {report}");
