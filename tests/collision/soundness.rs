@@ -189,25 +189,25 @@ fn no_bracket_of_a_million_misses_the_truth() {
     assert_sound(&sweep_on_two_threads(pairs.div_ceil(1000), 1000, 1_000_000));
 }
 
-/// Oracle: the truth about the witness point, as a shape of its own, against the shape it should be on.
+/// Oracle: the truth about the pair, and about each witness point as a shape of its own against the shape it should be on.
 #[test]
-#[ignore = "after an expansion the pair of points belongs to a face that raised the lower bound, not to the nearest one"]
-fn witness_points_of_closed_brackets_are_on_their_shapes() {
+fn witnesses_and_normals_are_as_near_the_truth_as_they_say() {
     let mut random = Random::new(51);
     let (mut meeting, mut apart, mut wrong) = (0, 0, Vec::new());
-    for _ in 0..2000 {
+    for number in 0..1500 {
         let Pair { a, b } = random_pair(&mut random);
-        let found = ask(&a, &b, &Goal::penetration());
-        let truth = truth(&a.body, &b.body, 1e-3 * found.bracket.width(), 400);
+        let accuracy = Accuracy { absolute: 0.0, relative: [1e-9, 1e-3, 0.0][number % 3] };
+        let found = ask(&a, &b, &Goal { accuracy, ..Goal::penetration() });
+        let truth = truth(&a.body, &b.body, 0.0, 100);
         if truth.value() < 0.0 {
             meeting += 1;
         } else {
             apart += 1;
         }
         for fault in witness_faults(&a, &b, &found, &truth) {
-            wrong.push(format!("{fault}\n  A {:?}\n  B {:?}\n  {found:?}", a.body, b.body));
+            wrong.push(format!("{fault}\n  A {:?}\n  B {:?}\n  {found:?}\n  {truth:?}", a.body, b.body));
         }
     }
-    assert!(meeting > 400 && apart > 400, "{meeting} meet, {apart} are apart");
-    assert!(wrong.is_empty(), "{} witnesses are off:\n{}", wrong.len(), wrong[..wrong.len().min(5)].join("\n"));
+    assert!(meeting > 300 && apart > 300, "{meeting} meet, {apart} are apart");
+    assert!(wrong.is_empty(), "{} are off:\n{}", wrong.len(), wrong[..wrong.len().min(8)].join("\n"));
 }

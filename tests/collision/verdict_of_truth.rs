@@ -1,7 +1,7 @@
 //! What must be true of an answer, given the truth about the pair.
 
 use clearance::geometry::Vec3;
-use clearance::narrow_phase::{Goal, Separation, Termination};
+use clearance::narrow_phase::{Goal, Separation};
 
 use crate::oracle::double_double::Dd;
 use crate::oracle::{Truth, truth};
@@ -37,27 +37,31 @@ pub fn faults(found: &Separation, goal: &Goal, truth: &Truth) -> Vec<String> {
     faults
 }
 
-/// How far a witness point may be from its shape, and whether both are within that. Only for brackets that closed.
-///
-/// Apart: the points are u = |x| apart on the cores, a separating plane proves l, so the true nearest point of the
-/// difference is within sqrt(u^2 - l^2) of x. In an overlap a point of a face nearest the origin is on the boundary to the
-/// bracket's width, and beside the true one by what a shape of that extent bends within the width.
+/// Whether the witness points and the normal are within the errors that the answer states: the points of their shapes, and,
+/// of shapes apart, the vector and its direction of the true ones. No slack beyond what the truth leaves open and
+/// the rounding of this comparison.
 pub fn witness_faults(a: &Specimen, b: &Specimen, found: &Separation, truth: &Truth) -> Vec<String> {
-    match found.termination {
-        Termination::Converged | Termination::RoundingFloor | Termination::ClosedForm => {}
-        Termination::Decided | Termination::IterationLimit | Termination::TimeLimit => return Vec::new(),
-    }
-    let radii = (a.body.swept_radius + b.body.swept_radius).hi;
-    let (lower, upper) = (found.bracket.lower + radii, found.bracket.upper + radii);
-    let width = found.bracket.width();
-    let beside = if lower > 0.0 { (width * (lower + upper)).sqrt() } else { (2.0 * width * truth.size).sqrt() };
-    let places = found.point_on_a.amax() + found.point_on_b.amax();
-    let allowed = width + beside + FEW_ROUNDINGS * (places + truth.size);
     let mut faults = Vec::new();
     for (name, specimen, point) in [("A", a, found.point_on_a), ("B", b, found.point_on_b)] {
         let off = distance_outside(specimen, point, truth.size);
-        if !(off <= allowed) {
-            faults.push(format!("the witness on {name} is {off:e} m off its shape, {allowed:e} allowed"));
+        if !(off <= found.point_error) {
+            faults.push(format!("the witness on {name} is {off:e} m off its shape, {:e} stated", found.point_error));
+        }
+    }
+    if truth.lower > Dd::ZERO {
+        // Any direction that proves l of a distance u is turned from the true one by an angle of cosine l / u at least.
+        let open = (2.0 * truth.width() / truth.upper.hi).sqrt() + FEW_ROUNDINGS;
+        let normal = Vec3::from(truth.normal);
+        let chord = (found.normal - normal).norm();
+        if !(chord <= found.normal_error + open) {
+            faults.push(format!("the normal is turned by {chord:e}, {:e} stated", found.normal_error));
+        }
+        let off = (found.point_on_b - found.point_on_a - normal * truth.value()).norm();
+        // The difference of the stored points rounds with where they are.
+        let places = found.point_on_a.amax() + found.point_on_b.amax();
+        let rounding = truth.value() * open + truth.width() + f64::EPSILON * places;
+        if !(off <= found.point_error + rounding) {
+            faults.push(format!("the vector between the witnesses is {off:e} m off, {:e} stated", found.point_error));
         }
     }
     faults
