@@ -1,11 +1,10 @@
-//! What the fuzz targets share: the oracle of the collision tests, and pairs of shapes as bytes.
+//! What the fuzz targets share with the collision tests: the oracle, what must be true of an answer, pairs as bytes.
 
-#[allow(dead_code)]
-#[path = "../../tests/collision/hard_cases.rs"]
-pub mod hard_cases;
 #[allow(dead_code)]
 #[path = "../../tests/collision/oracle/mod.rs"]
 pub mod oracle;
+#[allow(dead_code)]
+#[path = "../../tests/collision/pair_bytes.rs"]
 pub mod pair_bytes;
 #[allow(dead_code)]
 #[path = "../../tests/collision/specimen.rs"]

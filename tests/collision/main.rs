@@ -9,6 +9,7 @@ mod known_failures;
 mod laws;
 mod meshes;
 mod oracle;
+mod pair_bytes;
 mod random_pairs;
 mod samples;
 mod solvers;

@@ -1,4 +1,5 @@
-//! A placed pair of shapes as bytes, so that every string of bytes of some length is a pair that can be asked about.
+//! A placed pair of shapes as bytes, so that every string of bytes of some length is a pair that can be asked about: for
+//! the fuzz target `bracket`.
 //!
 //! A shape is a byte for its kind, one that says whether a ball is swept over it, and its numbers; then come its position and
 //! quaternion. A number is the 8 bytes of a double, little-endian. Doubles whose exponents would leave the range that the
@@ -116,4 +117,33 @@ fn write_body(bytes: &mut Vec<u8>, body: &Body) -> Option<()> {
     let all = numbers.iter().chain(&radius).chain(&body.translation).chain(&body.rotation);
     all.for_each(|x| bytes.extend(x.to_le_bytes()));
     Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hard_cases::hard_cases;
+
+    /// Every hard pair that the format has room for is read back as it was written, and most are. With `FUZZ_CORPUS` set to a
+    /// folder they are written there, and lines of the corpus beside them: the seeds of `fuzz/run`.
+    #[test]
+    fn hard_pairs_survive_as_bytes() {
+        let cases = hard_cases();
+        let seeds: Vec<_> = cases.iter().filter_map(|case| Some((&case.id, write(&case.a, &case.b)?))).collect();
+        assert!(seeds.len() > 900, "only {} of {} fit", seeds.len(), cases.len());
+        let Ok(folder) = std::env::var("FUZZ_CORPUS") else { return };
+        let folder = std::path::PathBuf::from(folder);
+        let (pairs, lines) = (folder.join("bracket"), folder.join("case_line"));
+        std::fs::create_dir_all(&pairs).unwrap();
+        std::fs::create_dir_all(&lines).unwrap();
+        for (id, bytes) in seeds {
+            std::fs::write(pairs.join(id), bytes).unwrap();
+        }
+        // Every tenth line: a few of each kind show the format.
+        for (number, line) in include_str!("../data/hard.jsonl").lines().enumerate().step_by(10) {
+            if line.len() < 4000 {
+                std::fs::write(lines.join(number.to_string()), line).unwrap();
+            }
+        }
+    }
 }
