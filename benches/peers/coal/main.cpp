@@ -27,7 +27,9 @@ static Words split(const std::string& text) {
   return words;
 }
 
-static bool has(const Words& words, const char* word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+static bool has(const Words& words, const char* word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 static bool starts_with(const std::string& text, const char* prefix) { return text.rfind(prefix, 0) == 0; }
 

@@ -51,5 +51,6 @@ inline Geometry make_convex(const ShapeRecord& shape) {
 }
 
 inline coal::Transform3s transform(const double* q, const double* t) {
-  return coal::Transform3s(Eigen::Quaterniond(q[3], q[0], q[1], q[2]).toRotationMatrix(), coal::Vec3s(t[0], t[1], t[2]));
+  Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+  return coal::Transform3s(rotation.toRotationMatrix(), coal::Vec3s(t[0], t[1], t[2]));
 }

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-#: Errors below this are equal, metres: a few units in the last place of distances near 1, which the reference is rounded to.
+#: Errors below this are equal, metres: a few units in the last place of distances near 1, as the reference is rounded.
 EQUAL = 1e-15
 
 

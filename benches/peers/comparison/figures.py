@@ -1,4 +1,4 @@
-"""Medians of times that come in steps; ratios of interleaved rounds, with an interval that assumes nothing about the noise."""
+"""Medians of times that come in steps, and ratios of interleaved rounds with an interval that takes any noise."""
 
 from math import comb
 

@@ -1,7 +1,7 @@
 """Times one row: every contender and configuration that can be the fastest makes its passes in turn, round after round.
 
-A trial comes first: one pass each, whose answers are judged, and which sends away what is far from the fastest. Then the
-rounds: in each, every entry makes one pass, in an order that rotates, so that a machine that slows down slows all of them.
+A trial comes first, whose answers are judged, and which sends away what is far from the fastest. Then the rounds: in
+each, every entry makes one pass, in an order that rotates, so that a machine that slows down slows all of them.
 """
 
 from dataclasses import dataclass, field
@@ -13,8 +13,9 @@ from figures import grouped_median, ratio_of_rounds
 
 #: Pairs of the first look, which spares us minutes where a contender takes a second a pair.
 FEW = 4
-#: What takes this much longer than the fastest there is judged and shown by those pairs alone.
-HOPELESS = 30
+#: What takes this much longer than the fastest there, and more than this many nanoseconds, is judged and shown by those
+#: pairs alone.
+HOPELESS, BEARABLE = 30, 200_000
 #: A configuration that takes this much longer than the fastest peer in the trial is not timed further.
 SLOW = 1.3
 TRIAL_PASSES = 2
@@ -127,11 +128,12 @@ def trial(row, pair_set, contenders, count):
     asked = [(c, config) for c in contenders.values() for config in c.configs(pair_set.name, row.operation)]
     few = min(FEW, count)
     look = {(c, config): c.ask(pair_set.name, row.operation, config, few) for c, config in asked}
-    limit = HOPELESS * min(np.mean(seen.ticks) for seen in look.values())
+    fastest = min(np.median(seen.ticks) for seen in look.values())
+    limit = max(HOPELESS * fastest, BEARABLE * next(iter(contenders.values())).ticks_per_nanosecond)
     entries, missed = [], []
     for contender, config in asked:
         seen = look[contender, config]
-        hopeless = np.mean(seen.ticks) > limit
+        hopeless = np.median(seen.ticks) > limit
         time = np.median(seen.ticks)
         if not hopeless:
             passes = [contender.ask(pair_set.name, row.operation, config, count) for _ in range(TRIAL_PASSES)]

@@ -69,15 +69,18 @@ def preamble(settings):
     return [
         "# Our narrow phase beside Coal and parry",
         "",
-        f"`{settings.command}` on {datetime.now(timezone.utc):%Y-%m-%d}, commit {commit()}, {processor()}, one core of",
-        f"{os.cpu_count()} (load average {os.getloadavg()[0]:.1f}), {settings.rounds} rounds, {settings.count} pairs a set (meshes: {settings.count // 10}).",
-        f"Coal {version('coal')} (wheel, any x86-64), parry 0.31.1 (target-cpu=native), ours for any x86-64 with SIMD chosen at run time.",
+        f"`{settings.command}` on {datetime.now(timezone.utc):%Y-%m-%d}, commit {commit()},",
+        f"{processor()}, one core of {os.cpu_count()} (load average {os.getloadavg()[0]:.1f}),",
+        f"{settings.rounds} rounds, {settings.count} pairs a set (meshes: {settings.count // 10}).",
+        f"Coal {version('coal')} (its wheel, any x86-64), parry 0.31.1 (target-cpu=native), ours for any x86-64 with",
+        "wider instructions chosen at run time.",
         "",
-        "Cold: each pair once a pass. A pair's time is its median over the rounds; a row shows the median and the 99th",
-        "percentile over the pairs. Ratio: ours to the best peer's, median over the rounds of the ratio of medians, with the",
-        "95 % interval of order statistics; *unclear*: the target is in it. Best peer: the fastest configuration in f64 (of",
-        "booleans, one without a wrong answer). Ours runs at the loosest tolerance whose 99th percentile of the error, metres,",
-        "is no worse than that peer's. Tracks (`warm`): ours from its cache against ours without.",
+        "Cold: each pair once a pass. A pair's time is its median over the rounds; a row shows the median and the",
+        "99th percentile over the pairs. Ratio: ours to the best peer's, median over the rounds of the ratio of",
+        "medians, with the 95 % interval of order statistics; *unclear*: the target is in it. Best peer: the fastest",
+        "configuration in f64 (of booleans, one without a wrong answer). Ours runs at the loosest tolerance whose",
+        "99th percentile of the error, metres, is no worse than that peer's. Tracks (`warm`): ours from its cache",
+        "against ours without.",
     ]
 
 
@@ -89,10 +92,11 @@ def remarks(results):
         good = sum(r.ratio()[0] <= r.row.target for r in met)
         tails = [r for r in met if not r.row.against_own_cold]
         good99 = sum(r.ratio99() <= 1 for r in tails)
-        lines.append(f"{good} of {len(met)} targets met; p99 no worse than the best peer's in {good99} of {len(tails)} rows.")
+        lines.append(f"{good} of {len(met)} targets met; p99 no worse in {good99} of {len(tails)} rows.")
     missed = sum(len(pairs) for r in results for _, pairs in r.missed_brackets)
     lines.append(f"Brackets that do not hold the reference: {missed}.")
-    lines += [f"- {r.row.name} {config}: pairs {list(pairs[:5])}" for r in results for config, pairs in r.missed_brackets]
+    for result in results:
+        lines += [f"- {result.row.name} {config}: pairs {list(pairs[:5])}" for config, pairs in result.missed_brackets]
     wrong = [f"{r.row.name}: {', '.join(settings_of(r.disqualified))}" for r in results if r.disqualified]
     if wrong:
         lines += ["", "Configurations with wrong booleans (how many), which cannot be the best:"]
@@ -105,14 +109,17 @@ def settings_of(entries):
     return list({f"{e.contender.name} {'/'.join(e.config.split('/')[:2])} ({e.wrong})": None for e in entries})
 
 
-FIELDS = "row,target,contender,config,role,median_ns,p99_ns,ratio,ratio_low,ratio_high,ratio_p99,error_p99,error_max,unanswered"
+FIELDS = (
+    *("row", "target", "contender", "config", "role", "median_ns", "p99_ns"),
+    *("ratio", "ratio_low", "ratio_high", "ratio_p99", "error_p99", "error_max", "unanswered"),
+)
 
 
 def write_csv(path, results):
     """Every entry that was timed, a line each."""
     with path.open("w", newline="") as out:
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(FIELDS.split(","))
+        writer.writerow(FIELDS)
         for result in results:
             for entry in result.entries:
                 writer.writerow(csv_line(result, entry))
@@ -154,7 +161,8 @@ def progress(result):
         return f"{result.row.name}: not comparable"
     ratio, low, high = result.ratio()
     peer, ours = result.peer, result.ours
-    target = "" if result.row.target is None else f" target {result.row.target:g} {verdict(ratio, low, high, result.row.target)}"
+    wanted = result.row.target
+    target = "" if wanted is None else f" target {wanted:g} {verdict(ratio, low, high, wanted)}"
     return (
         f"{result.row.name:32} {ratio:6.2f} [{low:.2f}, {high:.2f}]{target}   p99 {result.ratio99():.2f}   "
         f"{OURS} {ours.config} {microseconds(ours.median())} µs, {entry_name(peer)} {microseconds(peer.median())} µs"

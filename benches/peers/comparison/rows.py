@@ -1,4 +1,4 @@
-"""The rows of the table: which question about which set of pairs, and how much of the best peer's time ours may take."""
+"""The rows of the table: a question about a set of pairs, and how much of the best peer's time ours may take."""
 
 from dataclasses import dataclass
 from fnmatch import fnmatch
@@ -56,5 +56,6 @@ def rows_named(patterns):
     """Those whose name (or kind) matches one of the shell patterns; all of them without patterns."""
     wanted = [row for row in all_rows() if not patterns or any(fnmatch(row.name, p) or row.kind == p for p in patterns)]
     if not wanted:
-        raise SystemExit(f"no row is named {' or '.join(patterns)}; the names: {', '.join(row.name for row in all_rows())}")
+        names = ", ".join(row.name for row in all_rows())
+        raise SystemExit(f"no row is named {' or '.join(patterns)}; the names: {names}")
     return wanted

@@ -1,4 +1,4 @@
-"""Writes `pairs.bin`, the pairs of shapes that all contenders are asked about. From one fixed seed; README.md says the layout.
+"""Writes `pairs.bin`, the pairs of shapes that all contenders are asked about, from one seed. README.md has the layout.
 
     python generate FILE
 """

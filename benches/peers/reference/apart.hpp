@@ -1,7 +1,7 @@
 // Distance of two convex cores that are apart: GJK in 113-bit floats, run until its duality gap closes.
 //
-// Supports look at every corner, and the nearest point of a simplex is found by trying all of its faces, so that nothing
-// here depends on a tolerance. The gap is the certificate: distance - gap <= truth <= distance.
+// Supports look at every corner, and the nearest point of a simplex is found by trying all of its faces, so that
+// nothing here depends on a tolerance. The gap is the certificate: distance - gap <= truth <= distance.
 #pragma once
 
 #include "bodies.hpp"
@@ -11,8 +11,8 @@ struct Certified {
   Quad distance, gap;
 };
 
-// Coefficients of the point nearest to the origin in the plane through `count` points (a simplex); false when it is flat
-// or the point lies outside of the simplex.
+// Coefficients of the point nearest to the origin in the plane through `count` points (a simplex); false when it is
+// flat or the point lies outside of the simplex.
 inline bool affine_nearest(const Vec<Quad>* points, int count, Quad* weights) {
   Quad rows[3][4];
   int n = count - 1;

@@ -1,8 +1,8 @@
 // Depth of overlapping round shapes: the least overlap over all directions, by search in 80-bit floats.
 //
-// Every direction tried gives an upper bound of the depth, so the result is one; that it is the least is not proved. On
-// a kink of the overlap (the directions across a cylinder's side, along a cone's slope) the search runs along the kink; all
-// others are searched from the best of 3000 directions by shrinking steps. Error about 1e-10 m.
+// Every direction tried gives an upper bound of the depth, so the result is one; that it is the least is not proved.
+// On a kink of the overlap (the directions across a cylinder's side, along a cone's slope) the search runs along the
+// kink; all others are searched from the best of 3000 directions by shrinking steps. Error about 1e-10 m.
 #pragma once
 
 #include <cmath>
@@ -44,7 +44,9 @@ class DepthSearch {
     const int samples = 720;
     const Extended golden = 0.6180339887498949L, step = 2 * M_PIl / samples;
     Extended across = sqrtl(1 - height * height);
-    auto at = [&](Extended angle) { return overlap(body.turned({across * cosl(angle), across * sinl(angle), height})); };
+    auto at = [&](Extended angle) {
+      return overlap(body.turned({across * cosl(angle), across * sinl(angle), height}));
+    };
     std::vector<Extended> sampled(samples);
     for (int i = 0; i < samples; i++) sampled[i] = at(i * step);
     for (int i = 0; i < samples; i++) {

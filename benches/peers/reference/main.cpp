@@ -1,8 +1,8 @@
 // The reference signed distance of every pair, far more exact than any contender: `reference PAIRS DISTANCES GAPS`.
 //
 // Writes one f64 a pair, in the order of the file; NaN where there is none (costly sets have references for their first
-// pairs only). The truth is within the gap of the distance, besides half a unit in the last place: proved for what is apart
-// and for polytopes, an estimate (1e-9 m) for the depth of round shapes.
+// pairs only). The truth is within the gap of the distance, besides half a unit in the last place: proved for what is
+// apart and for polytopes, an estimate (1e-9 m) for the depth of round shapes.
 #include <chrono>
 
 #include "apart.hpp"

@@ -18,7 +18,9 @@ inline Extended point_segment(V p, V a, V b) {
 
 // The least is between inner points of both, or at an end of one.
 inline Extended segment_segment(V a, V b, V c, V d) {
-  Extended ends = std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
+  Extended of_first = std::min(point_segment(a, c, d), point_segment(b, c, d));
+  Extended of_second = std::min(point_segment(c, a, b), point_segment(d, a, b));
+  Extended ends = std::min(of_first, of_second);
   V u = b - a, v = d - c, w = a - c;
   Extended uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
   Extended denominator = uu * vv - uv * uv;
@@ -67,8 +69,10 @@ struct Bounds {
 
   Extended distance(const Bounds& other) const {
     auto between = [](Extended l, Extended h, Extended ol, Extended oh) { return std::max({0.0L, ol - h, l - oh}); };
-    return length(V{between(low.x, high.x, other.low.x, other.high.x), between(low.y, high.y, other.low.y, other.high.y),
-                    between(low.z, high.z, other.low.z, other.high.z)});
+    Extended x = between(low.x, high.x, other.low.x, other.high.x);
+    Extended y = between(low.y, high.y, other.low.y, other.high.y);
+    Extended z = between(low.z, high.z, other.low.z, other.high.z);
+    return length(V{x, y, z});
   }
 };
 
@@ -76,7 +80,8 @@ struct Bounds {
 class BoxTree {
  public:
   explicit BoxTree(const Body<Extended>& body) {
-    for (auto& t : body.shape->triangles) triangles.push_back({body.corners[t[0]], body.corners[t[1]], body.corners[t[2]]});
+    const auto& corners = body.corners;
+    for (auto& t : body.shape->triangles) triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
     order.resize(triangles.size());
     std::iota(order.begin(), order.end(), 0);
     build(0, order.size());

@@ -78,7 +78,7 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// `ask(i)` answers about pair i of the set; the clock runs while it does. `read` turns what it returned into numbers.
+    /// `ask(i)` answers about pair i of the set, with the clock running; `read` turns what it returned into numbers.
     #[inline(always)]
     pub fn run<T>(&mut self, mut ask: impl FnMut(usize) -> T, read: impl Fn(T) -> Answer) {
         self.bytes.reserve(32 * self.count);

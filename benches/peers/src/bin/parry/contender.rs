@@ -1,7 +1,7 @@
 //! parry's own queries, as it ships them. It has no settings, so there is one configuration for each kind of pair.
 //!
-//! It has no ellipsoid: there its functions for support maps run on a support function of ours. Tracks are followed cold
-//! and warm with its GJK, whose simplex starts from the direction that the step before ended with.
+//! It has no ellipsoid: there its functions for support maps run on a support function of ours. Tracks are followed
+//! cold and warm with its GJK, whose simplex starts from the direction that the step before ended with.
 
 use std::f64::consts::FRAC_PI_2;
 use std::panic::{self, AssertUnwindSafe};

@@ -1,4 +1,4 @@
-//! The contender over parry in double precision. The crate is one for each precision, so the contender is compiled twice.
+//! The contender over parry in double precision. There is a crate for each precision, so it is compiled twice.
 
 pub use parry3d_f64 as parry;
 
