@@ -26,7 +26,7 @@ impl Scan {
         let block = |chunk: &[Vec3]| {
             [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))
         };
-        Self { blocks: points.chunks(LANES).map(block).collect(), arch: Arch::new() }
+        Self { blocks: points.chunks(LANES).map(block).collect(), arch: arch() }
     }
 
     /// Index of the point where `direction . x` is greatest; among equals the first.
@@ -37,6 +37,11 @@ impl Scan {
             self.arch.dispatch(|| farthest(&self.blocks, direction))
         }
     }
+}
+
+/// What the processor has. A build with `CLEARANCE_SCALAR` set does without: `benches/instructions` compares the two.
+fn arch() -> Arch {
+    if option_env!("CLEARANCE_SCALAR").is_some() { Arch::Scalar } else { Arch::new() }
 }
 
 /// First the greatest value, lane by lane and without branches; then the first point that has it, found by evaluating the

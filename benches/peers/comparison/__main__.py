@@ -31,6 +31,7 @@ def arguments():
     parser.add_argument("--rounds", type=int, help="rounds in which all make a pass in turn (11)")
     parser.add_argument("--count", type=int, help="pairs of each set (1000), of meshes a tenth")
     parser.add_argument("--cpu", type=int, default=1, help="the core that all contenders are pinned to (1)")
+    parser.add_argument("--solver", help="of ours: a solver of the ladder by its name, in place of the default")
     parser.add_argument("--save", action="store_true", help="write the table to benches/results/peers.md and .csv")
     return parser.parse_args()
 
@@ -41,7 +42,7 @@ def main():
     count = chosen.count or (200 if chosen.quick else 1000)
     settings = Settings(command, count, chosen.rounds or (5 if chosen.quick else 11))
     rows, sets = rows_named(chosen.rows), read_sets(FOLDER)
-    contenders = start_all(FOLDER, chosen.cpu)
+    contenders = start_all(FOLDER, chosen.cpu, chosen.solver)
     results = []
     for row in rows:
         pair_set = sets[row.pair_set]

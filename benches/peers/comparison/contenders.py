@@ -18,8 +18,10 @@ class Pass:
 
 
 class Contender:
-    def __init__(self, name, command, cpu):
+    def __init__(self, name, command, cpu, setting=""):
         self.name = name
+        #: A word added to every configuration.
+        self.setting = setting
         words = ["taskset", "-c", str(cpu), *map(str, command)]
         self.process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         ready, ticks_per_nanosecond, step = self._line().split()
@@ -30,7 +32,7 @@ class Contender:
     def configs(self, pair_set, operation):
         """The ways in which it can be asked this; none when it cannot."""
         self._send(f"configs {pair_set} {operation}")
-        return self._line().split()
+        return [config + self.setting for config in self._line().split()]
 
     def ask(self, pair_set, operation, config, count):
         self._send(f"pass {pair_set} {operation} {config} {count}")
@@ -58,7 +60,8 @@ OURS, COAL, PARRY, PARRY_SINGLE = "ours", "Coal", "parry f64", "parry f32"
 PEERS = (COAL, PARRY)
 
 
-def start_all(folder, cpu):
+def start_all(folder, cpu, solver=None):
+    """All of them; `solver` is for ours."""
     pairs = folder / "pairs.bin"
     parry = folder / "rust/parry/parry"
     commands = {
@@ -67,4 +70,5 @@ def start_all(folder, cpu):
         PARRY_SINGLE: [parry, "f32", pairs],
         OURS: [folder / "rust/release/ours", pairs],
     }
-    return {name: Contender(name, command, cpu) for name, command in commands.items()}
+    settings = {OURS: f"/{solver}"} if solver else {}
+    return {name: Contender(name, command, cpu, settings.get(name, "")) for name, command in commands.items()}

@@ -1,7 +1,8 @@
 //! `clearance` as a contender, through the door of its narrow phase. A configuration is words joined by "/":
 //!
-//!   1e-3 .. 1e-12    the relative tolerance
-//!   cold             each pair anew
+//!   1e-3 .. 1e-12     the relative tolerance
+//!   cold              each pair anew
+//!   gjk, sat, ...     a solver of the ladder by its name; the default without one
 
 use std::env;
 use std::error::Error;
@@ -9,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clearance::geometry::{InvalidShape, Placement, Pose, Quaternion, Shape, TriangleMesh, Vec3};
-use clearance::narrow_phase::{Accuracy, Depth, Goal, Separation, UnboundedPair, separation};
+use clearance::narrow_phase::{Accuracy, Depth, Goal, NoSeparation, Separation, Solver, separation};
 use clearance_peers::contender::{Answer, Contender, Pass, serve};
 use clearance_peers::pairs::{Kind, PairSet, Pairs, PoseRecord, ShapeRecord};
 
@@ -42,8 +43,10 @@ impl Contender for Ours<'_> {
     }
 
     fn ask(&mut self, set: &PairSet, operation: &str, config: &str, pass: &mut Pass) {
-        let tolerance = config.split('/').find_map(|word| word.parse().ok()).expect("a configuration has a tolerance");
-        let goal = Goal { depth: depth(operation), accuracy: relative(tolerance), ..Goal::penetration() };
+        let mut words = config.split('/');
+        let tolerance = words.clone().find_map(|word| word.parse().ok()).expect("a configuration has a tolerance");
+        let solver = words.find_map(Solver::named).unwrap_or_default();
+        let goal = Goal { depth: depth(operation), accuracy: relative(tolerance), solver, ..Goal::penetration() };
         let pairs: Vec<(&Shape, &Shape, Placement, Placement)> = (self.pairs.of(set).iter())
             .map(|pair| (&self.shapes[pair.a], &self.shapes[pair.b], placement(&pair.at_a), placement(&pair.at_b)))
             .collect();
@@ -70,7 +73,7 @@ fn relative(tolerance: f64) -> Accuracy {
     Accuracy { relative: tolerance, ..Accuracy::default() }
 }
 
-fn distance(found: Result<Separation, UnboundedPair>) -> Answer {
+fn distance(found: Result<Separation, NoSeparation>) -> Answer {
     match found {
         Ok(found) => Answer { value: found.signed_distance, bracket: Some((found.bracket.lower, found.bracket.upper)) },
         Err(_) => Answer::from(f64::NAN),
@@ -78,7 +81,7 @@ fn distance(found: Result<Separation, UnboundedPair>) -> Answer {
 }
 
 /// 1 and 0 for touching and apart; NaN when the bracket leaves it open.
-fn verdict(found: Result<Separation, UnboundedPair>) -> Answer {
+fn verdict(found: Result<Separation, NoSeparation>) -> Answer {
     let Answer { bracket, .. } = distance(found);
     let value = match bracket {
         Some((_, upper)) if upper <= 0.0 => 1.0,
