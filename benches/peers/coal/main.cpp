@@ -84,6 +84,7 @@ class Coal {
       // Coal has no distance between trees of plain OBB.
       names = boolean ? Words{"obbrss", "rss", "kios", "obb"} : Words{"obbrss", "rss", "kios"};
     } else if (starts_with(set.name, "warm")) {
+      if (operation != "distance") return {};
       return {"gjk/1e-06/cold", "gjk/1e-06/warm", "polyak/1e-06/cold", "polyak/1e-06/warm"};
     } else {
       for (const char* variant : {"gjk", "nesterov", "polyak"}) {

@@ -116,9 +116,9 @@ def race(row, pair_set, contenders, count, rounds):
 def race_warm(row, entries, missed, pair_set, count, rounds):
     """Tracks: ours from a cache against ours without, at the default tolerance; the peers' are shown."""
     shown = [entry for entry in entries if not entry.is_ours]
-    own = {entry.config: entry for entry in entries if entry.is_ours}
-    cold, warm = own["1e-9/cold"], own.get("1e-9/warm")
-    timed = [entry for entry in (*shown, cold, warm) if entry]
+    own = {entry.config.split("/")[1]: entry for entry in entries if entry.is_ours}
+    cold, warm = own["cold"], own["warm"]
+    timed = [*shown, cold, warm]
     run_rounds(row, pair_set, timed, count, rounds)
     return Result(row, timed, [], cold, warm, missed)
 

@@ -50,6 +50,8 @@ def all_rows():
                 yield Row(kind, mode, operation, f"{sets}_{mode}", target)
     for kind, pair_set in TRACKS:
         yield Row(kind, "", "distance", pair_set, WARM_TARGET, against_own_cold=True)
+        # What is apart is told so by one direction, with a cache and without.
+        yield Row(kind, "", "collide", pair_set, None, against_own_cold=True)
 
 
 def rows_named(patterns):

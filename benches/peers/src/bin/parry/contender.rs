@@ -127,7 +127,8 @@ impl Contender for Parry<'_> {
     fn configs(&self, set: &PairSet, operation: &str) -> Vec<String> {
         let names: &[&str] = match operation {
             "penetration" if set.name.starts_with("mesh") => &[],
-            _ if set.track_length > 0 => &["cold", "warm"],
+            "distance" if set.track_length > 0 => &["cold", "warm"],
+            _ if set.track_length > 0 => &[],
             _ if set.name.contains("ellell") => &["own_support"],
             _ => &["default"],
         };
