@@ -63,7 +63,7 @@ pub fn distance<V: Volume>(a: &Tree<V>, b: &Tree<V>, pair: &Pair, context: &V::C
             let found = of_triangles(s, t, &goal);
             if found.bracket.upper < nearest {
                 nearest = found.bracket.upper;
-                return Found { beyond: nearest.max(0.0) * (1.0 - 1e-9), normal: Some(found.normal), counts: 1 };
+                return Found { beyond: beyond(nearest), normal: Some(found.normal), counts: 1 };
             }
             return Found { counts: 1, ..Found::nothing(nearest) };
         }
@@ -96,8 +96,13 @@ struct Found {
 
 impl Found {
     fn nothing(nearest: f64) -> Self {
-        Self { beyond: nearest.max(0.0) * (1.0 - 1e-9), normal: None, counts: 0 }
+        Self { beyond: beyond(nearest), normal: None, counts: 0 }
     }
+}
+
+/// Beyond what a pair does not matter any more; nothing matters after a contact.
+fn beyond(nearest: f64) -> f64 {
+    if nearest <= 0.0 { f64::NEG_INFINITY } else { nearest * (1.0 - 1e-9) }
 }
 
 fn walk<V: Volume>(
