@@ -89,7 +89,9 @@ fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut C
     {
         let upper = simplex.x.norm() + error;
         let end = if encloses { End::Enclosed } else { End::Limit };
-        return Gjk { lower: f64::NEG_INFINITY, direction, simplex, upper, end };
+        // Not asked about any direction yet; but no point of C is farther from the origin than S, so no m(n) is below -S.
+        let lower = -2.0 * difference.extent - error;
+        return Gjk { lower, direction, simplex, upper, end };
     }
     let first = difference.lowest(direction);
     cost.supports += 1;

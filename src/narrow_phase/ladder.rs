@@ -79,5 +79,7 @@ fn overlap_measured(found: Epa, difference: &mut Difference, target: &Target, co
     if !is_open {
         return found;
     }
-    epa(difference, &[], Epa { lower: f64::NEG_INFINITY, ..found }, target, cost)
+    // Below any bound a direction can give, so that the first one counts; finite, because it may be the last.
+    let lower = -2.0 * difference.extent - difference.error;
+    epa(difference, &[], Epa { lower, ..found }, target, cost)
 }

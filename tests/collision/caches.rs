@@ -82,3 +82,21 @@ fn what_was_apart_is_told_apart_again_by_one_direction() {
         }
     }
 }
+
+/// An overlap that the remembered simplex decides at once once had a lower bound of minus infinity, and points to match.
+#[test]
+fn an_overlap_decided_from_memory_has_finite_numbers() {
+    let shapes = convex_shapes();
+    let at = Pose::identity().placement();
+    for a in &shapes {
+        for b in &shapes {
+            let mut cache = PairCache::new();
+            for depth in [Depth::Penetration, Depth::Distance, Depth::Verdict] {
+                let goal = Goal { depth, ..Goal::penetration() };
+                let found = separation_again(a, b, &at, &at, &goal, &mut cache).unwrap();
+                let numbers = [found.bracket.lower, found.signed_distance, found.point_on_b.norm(), found.point_error];
+                assert!(numbers.iter().all(|x| x.is_finite()), "{} and {}, {depth:?}: {found:?}", a.kind(), b.kind());
+            }
+        }
+    }
+}

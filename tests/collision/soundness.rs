@@ -6,14 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use clearance::narrow_phase::{Accuracy, Depth, Goal, Solver};
+use clearance::narrow_phase::{Accuracy, Depth, Goal, PairCache, Solver};
 
 use crate::hard_cases::hard_cases;
 use crate::oracle::double_double::Dd;
 use crate::oracle::{Truth, truth};
 use crate::random_pairs::{KINDS, Pair, random_pair};
 use crate::samples::Random;
-use crate::specimen::ask;
+use crate::specimen::{ask, ask_again};
 use crate::verdict_of_truth::{faults, witness_faults};
 
 /// Where the truth of a pair lies, by its share of the size.
@@ -68,8 +68,9 @@ fn regime(truth: &Truth, width: f64) -> &'static str {
     }
 }
 
-/// Asks about one pair at several goals and holds the answers against the truth.
-fn check(pair: &Pair, number: usize, tally: &mut Tally) {
+/// Asks about one pair at several goals, with and without a cache, and holds the answers against the truth. The cache is one
+/// for all pairs: first it comes from another pair, then from this one.
+fn check(pair: &Pair, number: usize, cache: &mut PairCache, tally: &mut Tally) {
     let full = Goal::penetration();
     let exact = Goal { accuracy: Accuracy { absolute: 0.0, relative: 0.0 }, ..full };
     let other = match number % 4 {
@@ -88,7 +89,10 @@ fn check(pair: &Pair, number: usize, tally: &mut Tally) {
         *tally.solvers.entry(solver.name()).or_default() += 1;
         goals.push(Goal { solver, ..full });
     }
-    let answers: Vec<_> = goals.iter().map(|goal| (goal, ask(&pair.a, &pair.b, goal))).collect();
+    let mut answers: Vec<_> = goals.iter().map(|goal| (goal, ask(&pair.a, &pair.b, goal))).collect();
+    for goal in [&full, &other, &full] {
+        answers.push((goal, ask_again(&pair.a, &pair.b, goal, cache)));
+    }
     let narrowest = answers.iter().map(|(_, found)| found.bracket.width()).fold(f64::INFINITY, f64::min);
     let truth = truth(&pair.a.body, &pair.b.body, 1e-3 * narrowest, 400);
     tally.pairs += 1;
@@ -109,8 +113,9 @@ fn check(pair: &Pair, number: usize, tally: &mut Tally) {
 fn sweep(pairs: usize, seed: u64) -> Tally {
     let mut random = Random::new(seed);
     let mut tally = Tally::default();
+    let mut cache = PairCache::new();
     for number in 0..pairs {
-        check(&random_pair(&mut random), number, &mut tally);
+        check(&random_pair(&mut random), number, &mut cache, &mut tally);
     }
     tally
 }

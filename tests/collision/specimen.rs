@@ -1,7 +1,7 @@
 //! One placed shape twice: as the library takes it, and as the numbers the oracle reads.
 
 use clearance::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
-use clearance::narrow_phase::{Goal, Separation, separation};
+use clearance::narrow_phase::{Goal, PairCache, Separation, separation, separation_again};
 
 use crate::oracle::double_double::Dd;
 use crate::oracle::{Body, Core};
@@ -114,4 +114,9 @@ impl Specimen {
 /// What the library says of a pair that is not two unbounded shapes.
 pub fn ask(a: &Specimen, b: &Specimen, goal: &Goal) -> Separation {
     separation(&a.shape, &b.shape, &a.placement(), &b.placement(), goal).expect("one of them has bounds")
+}
+
+/// The same from where `cache` was left.
+pub fn ask_again(a: &Specimen, b: &Specimen, goal: &Goal, cache: &mut PairCache) -> Separation {
+    separation_again(&a.shape, &b.shape, &a.placement(), &b.placement(), goal, cache).expect("one of them has bounds")
 }
