@@ -37,6 +37,7 @@ struct Cost {
     epa_iterations: u64,
     nodes: u64,
     pairs: u64,
+    escalations: u64,
 }
 
 /// What the sides of a pair are called.
@@ -52,7 +53,7 @@ impl AnswerLine {
     /// The answer to a state.
     #[must_use]
     pub fn of_answer(id: &Value, item: &ItemAnswer, revision: Revision, names: Names) -> Self {
-        let narrow_phase::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = item.cost;
+        let narrow_phase::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = item.cost;
         let distance = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| pair.signed_distance);
         let named = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| [names.of(&pair.a), names.of(&pair.b)]);
         Self {
@@ -67,7 +68,7 @@ impl AnswerLine {
             env_distance: distance(&item.nearest_scene),
             env_pair: named(&item.nearest_scene),
             revision: Some(revision.0),
-            cost: Some(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs }),
+            cost: Some(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }),
             message: item.problem.clone(),
         }
     }

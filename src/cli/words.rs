@@ -26,5 +26,6 @@ pub fn termination(termination: Termination) -> &'static str {
         Termination::RoundingFloor => "ROUNDING_FLOOR",
         Termination::IterationLimit => "ITERATION_LIMIT",
         Termination::TimeLimit => "TIME_LIMIT",
+        Termination::Exact => "EXACT",
     }
 }

@@ -158,7 +158,7 @@ impl Pose {
     /// The same pose with its rotation as a matrix, for work on many points.
     #[must_use]
     pub fn placement(&self) -> Placement {
-        Placement { rotation: self.rotation.matrix(), translation: self.translation }
+        Placement { rotation: self.rotation.matrix(), translation: self.translation, quaternion: Some(self.rotation) }
     }
 
     /// Pose of C in A, given `self` = B in A and `inner` = C in B. A unit quaternion stays one to rounding;
@@ -192,9 +192,23 @@ pub struct Placement {
     pub rotation: Mat3,
     /// Position of B's origin in A, metres.
     pub translation: Vec3,
+    /// What `rotation` is rounded from, for exact arithmetic; none where it was computed from other matrices.
+    pub quaternion: Option<Quaternion>,
 }
 
 impl Placement {
+    /// A placement that was computed, and so stands for no pose exactly.
+    #[must_use]
+    pub fn computed(rotation: Mat3, translation: Vec3) -> Self {
+        Self { rotation, translation, quaternion: None }
+    }
+
+    /// The frame itself.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self { rotation: Mat3::identity(), translation: Vec3::zeros(), quaternion: Some(Quaternion::IDENTITY) }
+    }
+
     /// The point `p` of B, in A.
     #[must_use]
     #[inline]
@@ -226,10 +240,8 @@ impl Placement {
             transposed_product(&a.rotation, Vec3::new(m[(0, j)], m[(1, j)], m[(2, j)]))
         };
         let [x, y, z] = [column(0), column(1), column(2)];
-        Self {
-            rotation: Mat3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z),
-            translation: transposed_product(&a.rotation, b.translation - a.translation),
-        }
+        let rotation = Mat3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
+        Self::computed(rotation, transposed_product(&a.rotation, b.translation - a.translation))
     }
 }
 

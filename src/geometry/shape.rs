@@ -13,6 +13,8 @@ use super::{Aabb, Compound, ConvexHull, InvalidShape, Placement, TriangleMesh, V
 pub struct Shape {
     core: Core,
     swept_radius: f64,
+    /// What rounding took off the swept radius when sweeps were added up.
+    rest_of_radius: f64,
     bounds: Option<Aabb>,
 }
 
@@ -114,7 +116,7 @@ pub(super) fn position(field: impl Fn() -> String, p: Vec3) -> Result<Vec3, Inva
 impl Shape {
     fn new(core: Core, swept_radius: f64) -> Self {
         let bounds = core.bounds().map(|b| b.grown(swept_radius));
-        Self { core, swept_radius, bounds }
+        Self { core, swept_radius, rest_of_radius: 0.0, bounds }
     }
 
     /// A ball. # Errors: a negative or non-finite radius.
@@ -216,8 +218,12 @@ impl Shape {
     /// # Errors
     /// A negative or non-finite radius.
     pub fn swept(&self, extra: f64) -> Result<Self, InvalidShape> {
-        let radius = length("swept_radius", self.swept_radius + length("swept_radius", extra)?)?;
-        Ok(Self::new(self.core.clone(), radius))
+        let (before, extra) = (self.swept_radius, length("swept_radius", extra)?);
+        let radius = length("swept_radius", before + extra)?;
+        // What the sum lost, without rounding (Knuth's two-sum).
+        let of_extra = radius - before;
+        let lost = (before - (radius - of_extra)) + (extra - of_extra);
+        Ok(Self { rest_of_radius: self.rest_of_radius + lost, ..Self::new(self.core.clone(), radius) })
     }
 
     /// The same shape with every length multiplied by `factor` about its origin, swept radius included.
@@ -239,6 +245,13 @@ impl Shape {
     #[must_use]
     pub fn swept_radius(&self) -> f64 {
         self.swept_radius
+    }
+
+    /// Two numbers whose sum, not rounded, is the radius of the ball swept over the core, metres: a capsule of radius 0.1 with
+    /// a margin of 0.2 has neither 0.3 nor the double next to it. Beyond two sweeps the second number is rounded itself.
+    #[must_use]
+    pub fn swept_radius_unrounded(&self) -> [f64; 2] {
+        [self.swept_radius, self.rest_of_radius]
     }
 
     /// Name of the kind, as in case files and on the wire.

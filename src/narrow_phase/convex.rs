@@ -2,6 +2,8 @@
 
 use super::bracketing::Target;
 use super::epa::{Epa, epa};
+use super::escalation;
+use super::given::Given;
 use super::gjk::{End, Gjk, gjk};
 use super::goal::{Depth, Goal};
 use super::ladder;
@@ -25,6 +27,8 @@ pub(super) struct Convex<'a> {
     pub at: &'a Placement,
     /// How far a point may be from where `at` says, by roundings that went into `at`; metres.
     pub placement_error: f64,
+    /// What `at` and the radius were rounded from.
+    pub given: Given<'a>,
 }
 
 /// What is known about A and B when the goal is reached.
@@ -36,19 +40,25 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
 /// The same, starting where the last query of the pair ended.
 #[inline]
 pub(super) fn separation_again(a: Convex, b: Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
-    if let Some(found) = segments::separation(&a, &b, goal) {
+    escalation::settle(&a, &b, goal, in_doubles(&a, &b, goal, cache))
+}
+
+/// What doubles know.
+#[inline]
+fn in_doubles(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
+    if let Some(found) = segments::separation(a, b, goal) {
         return found;
     }
     let b_in_a = Placement::relative(a.at, b.at);
     let extent = radius(a.core) + radius(b.core) + length(b_in_a.translation);
     let placement_error = a.placement_error + b.placement_error;
     if !(UNSCALED_EXTENT.0..=UNSCALED_EXTENT.1).contains(&extent) {
-        return scaled_separation(&a, &b, goal, b_in_a, extent, cache);
+        return scaled_separation(a, b, goal, b_in_a, extent, cache);
     }
     // Below the normal numbers roundings are absolute.
     let denormal = 64.0 * f64::MIN_POSITIVE;
     let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal);
-    solved(&a, &b, goal, difference, 1.0, cache)
+    solved(a, b, goal, difference, 1.0, cache)
 }
 
 /// Pairs of extreme size are brought near 1 by a power of two, which rounds nothing.
@@ -143,9 +153,11 @@ fn place(found: &Epa, a: &Convex, target: &Target, difference: &Difference, cost
     // shapes a support value is exact where a polytope is still coarse.
     let of_cores = match found.termination {
         Termination::Converged | Termination::RoundingFloor => found.direction.dot(&found.nearest.w),
-        Termination::Decided | Termination::IterationLimit | Termination::TimeLimit | Termination::ClosedForm => {
-            found.lower + difference.error
-        }
+        Termination::Decided
+        | Termination::IterationLimit
+        | Termination::TimeLimit
+        | Termination::ClosedForm
+        | Termination::Exact => found.lower + difference.error,
     };
     let signed_distance = (of_cores * target.unscale - target.radii).clamp(bracket.lower, bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.

@@ -41,8 +41,8 @@ impl<'a> Side<'a> {
     }
 
     fn convex<'c>(&'c self, core: &'c Core) -> Convex<'c> {
-        let Piece { swept_radius, at, placement_error, .. } = self.piece;
-        Convex { core, swept_radius: *swept_radius, at, placement_error: *placement_error }
+        let Piece { swept_radius, at, placement_error, given, .. } = self.piece;
+        Convex { core, swept_radius: *swept_radius, at, placement_error: *placement_error, given: *given }
     }
 
     /// Any point of the piece, in its frame.
@@ -94,7 +94,7 @@ impl<'a> Course<'a> {
     pub fn new(a: Side<'a>, b: Side<'a>) -> Self {
         let b_in_a = Placement::relative(&a.piece.at, &b.piece.at);
         let inverse = b_in_a.rotation.transpose();
-        let a_in_b = Placement { rotation: inverse, translation: -(inverse * b_in_a.translation) };
+        let a_in_b = Placement::computed(inverse, -(inverse * b_in_a.translation));
         let distance = length(b_in_a.translation);
         let extent = radius(a.piece.shape.core()) + radius(b.piece.shape.core()) + distance;
         let radii = a.piece.swept_radius + b.piece.swept_radius;

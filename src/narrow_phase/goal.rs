@@ -99,7 +99,9 @@ impl Goal<'_> {
         self.accuracy.is_met(bracket) && self.gives_a_verdict(bracket)
     }
 
-    fn gives_a_verdict(&self, bracket: &Bracket) -> bool {
+    /// Whether the bracket is on one side of contact and of the margin.
+    #[must_use]
+    pub(super) fn gives_a_verdict(&self, bracket: &Bracket) -> bool {
         let apart = bracket.lower > 0.0 && (bracket.lower > self.margin || bracket.upper <= self.margin);
         bracket.upper <= 0.0 || apart
     }

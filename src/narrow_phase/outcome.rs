@@ -36,6 +36,9 @@ pub enum Termination {
     IterationLimit,
     /// The caller's time ran out; the bracket is valid, and wider than was asked.
     TimeLimit,
+    /// Doubles could not decide, exact arithmetic did: the ends of the bracket are next to each other, or what was asked is
+    /// decided.
+    Exact,
 }
 
 /// What the work cost. Counters only, so that equal work has equal bytes.
@@ -51,6 +54,8 @@ pub struct Cost {
     pub nodes: u64,
     /// Pairs of convex shapes that the narrow phase looked at.
     pub pairs: u64,
+    /// Pairs that doubles left open and a higher precision took over.
+    pub escalations: u64,
 }
 
 impl AddAssign for Cost {
@@ -60,6 +65,7 @@ impl AddAssign for Cost {
         self.epa_iterations += other.epa_iterations;
         self.nodes += other.nodes;
         self.pairs += other.pairs;
+        self.escalations += other.escalations;
     }
 }
 

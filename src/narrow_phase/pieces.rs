@@ -1,6 +1,7 @@
 //! Placed shapes taken apart into pieces that are convex, unbounded or a mesh, and what their boxes alone say of a pair.
 
 use super::convex::{self, Convex};
+use super::given::Given;
 use super::goal::Goal;
 use super::outcome::Separation;
 use super::support::radius;
@@ -19,24 +20,28 @@ pub(super) struct Piece<'a> {
     pub placement_error: f64,
     /// Its place in the compound.
     pub part: u32,
+    /// What `at` and the radius were rounded from.
+    pub given: Given<'a>,
 }
 
 /// The pieces of a placed shape, in order.
 pub(super) struct Pieces<'a> {
     shape: &'a Shape,
     at: Placement,
+    /// What `at` was computed from.
+    given: &'a Placement,
     /// Whether the poses of one of the two shapes' parts are composed with its own, which rounds in the placement of both.
     composed: bool,
 }
 
 impl<'a> Pieces<'a> {
-    pub fn new(shape: &'a Shape, at: Placement, composed: bool) -> Self {
-        Self { shape, at, composed }
+    pub fn new(shape: &'a Shape, at: Placement, given: &'a Placement, composed: bool) -> Self {
+        Self { shape, at, given, composed }
     }
 
     /// The only piece of a shape that is no compound.
-    pub fn alone(shape: &'a Shape, at: Placement) -> Piece<'a> {
-        Self::new(shape, at, false).piece(0)
+    pub fn alone(shape: &'a Shape, at: Placement, given: &'a Placement) -> Piece<'a> {
+        Self::new(shape, at, given, false).piece(0)
     }
 
     pub fn len(&self) -> usize {
@@ -54,16 +59,18 @@ impl<'a> Pieces<'a> {
         let Core::Compound(compound) = shape.core() else {
             let reach = radius(shape.core()) + length(at.translation);
             let (swept_radius, placement_error) = (shape.swept_radius(), error(reach));
-            return Piece { shape, swept_radius, at: *at, placement_error, part: 0 };
+            let given = Given::alone(shape, self.given);
+            return Piece { shape, swept_radius, at: *at, placement_error, part: 0, given };
         };
         let part = &compound.parts()[index];
         let inner = part.pose.placement();
         Piece {
             shape: &part.shape,
             swept_radius: part.shape.swept_radius() + shape.swept_radius(),
-            at: Placement { rotation: at.rotation * inner.rotation, translation: at.point(inner.translation) },
+            at: Placement::computed(at.rotation * inner.rotation, at.point(inner.translation)),
             placement_error: error(radius(part.shape.core()) + length(inner.translation) + length(at.translation)),
             part: index as u32,
+            given: Given { at: self.given, whole: shape, part: Some(part) },
         }
     }
 }
@@ -95,6 +102,7 @@ pub(super) fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
         swept_radius: piece.swept_radius,
         at: &piece.at,
         placement_error: piece.placement_error,
+        given: piece.given,
     })
 }
 
@@ -102,8 +110,8 @@ pub(super) fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
 pub(super) fn simple_pair(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separation> {
     match (unbounded_of(a), unbounded_of(b)) {
         (Some(_), Some(_)) => None,
-        (None, Some(wall)) => Some(unbounded::separation(whole(a), wall)),
-        (Some(wall), None) => Some(swapped(unbounded::separation(whole(b), wall))),
+        (None, Some(wall)) => Some(unbounded::separation(whole(a), wall, goal)),
+        (Some(wall), None) => Some(swapped(unbounded::separation(whole(b), wall, goal))),
         (None, None) => Some(convex::separation(whole(a), whole(b), goal)),
     }
 }
@@ -114,6 +122,7 @@ fn whole<'a>(piece: &'a Piece) -> Convex<'a> {
         swept_radius: piece.swept_radius,
         at: &piece.at,
         placement_error: piece.placement_error,
+        given: piece.given,
     }
 }
 

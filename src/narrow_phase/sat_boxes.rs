@@ -118,7 +118,7 @@ impl BoxAxis {
             }
             Feature::FaceOfB(j) => {
                 // The same with the roles exchanged, in B's frame.
-                let a_in_b = Placement { rotation: m.transpose(), translation: -m.tr_mul(t) };
+                let a_in_b = Placement::computed(m.transpose(), -m.tr_mul(t));
                 let outward = m.tr_mul(&-self.normal);
                 let on_a = lowest_within(b, j, outward, a, &a_in_b, slack);
                 (b_in_a.point(on_a), b_in_a.point(clamped(on_a - outward * self.value, b)))

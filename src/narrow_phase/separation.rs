@@ -1,6 +1,7 @@
 //! The door of the narrow phase: any shape against any shape.
 
 use super::convex::{self, Convex};
+use super::given::Given;
 use super::goal::Goal;
 use super::outcome::Separation;
 use super::pair_cache::PairCache;
@@ -10,7 +11,7 @@ use super::support::is_convex;
 use super::union;
 use super::witness::WITNESS_ERROR_ULPS;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::{Core, Mat3, Placement, Shape, Vec3, length};
+use crate::geometry::{Core, Placement, Shape, length};
 
 /// Why a pair gets no answer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -62,14 +63,26 @@ pub fn separation_again(
         goal.solver.claims(a, b)?;
     }
     if is_convex(a.core()) && is_convex(b.core()) {
-        let one = Convex { core: a.core(), swept_radius: a.swept_radius(), at: at_a, placement_error: 0.0 };
-        let other = Convex { core: b.core(), swept_radius: b.swept_radius(), at: at_b, placement_error: 0.0 };
+        let one = Convex {
+            core: a.core(),
+            swept_radius: a.swept_radius(),
+            at: at_a,
+            placement_error: 0.0,
+            given: Given::alone(a, at_a),
+        };
+        let other = Convex {
+            core: b.core(),
+            swept_radius: b.swept_radius(),
+            at: at_b,
+            placement_error: 0.0,
+            given: Given::alone(b, at_b),
+        };
         return Ok(convex::separation_again(one, other, goal, cache));
     }
-    let own_frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
+    let own_frame = Placement::identity();
     let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));
-    let pieces_a = Pieces::new(a, own_frame, composed);
-    let pieces_b = Pieces::new(b, Placement::relative(at_a, at_b), composed);
+    let pieces_a = Pieces::new(a, own_frame, at_a, composed);
+    let pieces_b = Pieces::new(b, Placement::relative(at_a, at_b), at_b, composed);
     let found =
         union::separation(&pieces_a, &pieces_b, goal).ok_or(NoSeparation::Unbounded { a: a.kind(), b: b.kind() })?;
     let point_on_a = at_a.point(found.point_on_a);

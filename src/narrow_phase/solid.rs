@@ -1,5 +1,6 @@
 //! Solid meshes: what lies inside collides, though it may touch no triangle.
 
+use super::given::Given;
 use super::goal::Goal;
 use super::inside::is_inside;
 use super::outcome::{Bracket, Separation, Termination};
@@ -77,10 +78,12 @@ fn contains(outer: &Piece, inner: &Piece, gap: f64) -> Option<bool> {
 
 /// Whether a point in the frame of a mesh is farther than that from its triangles.
 fn is_clear(mesh: &Piece, point: Vec3, distance: f64) -> bool {
-    let frame = Placement { rotation: Mat3::identity(), translation: Vec3::zeros() };
-    let surface = Piece { at: frame, swept_radius: 0.0, placement_error: 0.0, ..*mesh };
+    // The point was computed, so no precision knows more of it.
     let shape = Shape::point();
-    let there = Pieces::alone(&shape, Placement { translation: point, ..frame });
+    let frame = Placement::computed(Mat3::identity(), Vec3::zeros());
+    let given = Given::alone(&shape, &frame);
+    let surface = Piece { at: frame, swept_radius: 0.0, placement_error: 0.0, given, ..*mesh };
+    let there = Pieces::alone(&shape, Placement { translation: point, ..frame }, &frame);
     let goal = Goal { margin: distance, ..Goal::verdict() };
     walk(&surface, &there, &goal).is_some_and(|found| found.bracket.lower > distance)
 }

@@ -79,7 +79,7 @@ pub fn touching_pairs(
     if !of_triangles(a) || !of_triangles(b) {
         return Err(refused);
     }
-    let (piece_a, piece_b) = (Pieces::alone(a, *at_a), Pieces::alone(b, *at_b));
+    let (piece_a, piece_b) = (Pieces::alone(a, *at_a, at_a), Pieces::alone(b, *at_b, at_b));
     let bounds = (a.core().bounds(), b.core().bounds());
     let ((Some(box_a), Some(box_b)), true) = (bounds, mesh_of(&piece_a).is_some() || mesh_of(&piece_b).is_some())
     else {

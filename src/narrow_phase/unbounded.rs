@@ -3,6 +3,9 @@
 use std::f64::consts::PI;
 
 use super::convex::Convex;
+use super::escalation;
+use super::given::Given;
+use super::goal::Goal;
 use super::outcome::{Bracket, Cost, Separation, Termination};
 use super::support::{radius, support};
 use super::witness::WITNESS_ERROR_ULPS;
@@ -19,6 +22,8 @@ pub(super) struct Unbounded<'a> {
     pub at: &'a Placement,
     /// How far a point may be from where `at` says, metres.
     pub placement_error: f64,
+    /// What `at` and the radius were rounded from.
+    pub given: Given<'a>,
 }
 
 impl Unbounded<'_> {
@@ -34,7 +39,7 @@ impl Unbounded<'_> {
 
 /// How far A is from `b`. Signed distance: n . a - offset/|normal| at the lowest point a of A, less the swept radii;
 /// from a plane, on whichever side A sticks out less.
-pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
+pub(super) fn separation(a: Convex, b: Unbounded, goal: &Goal) -> Separation {
     let (normal, offset) = b.upright();
     let b_in_a = Placement::relative(a.at, b.at);
     let up = b_in_a.direction(normal);
@@ -62,7 +67,7 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
     let normal_error = if sides_alike { PI } else { WITNESS_ERROR_ULPS * f64::EPSILON };
     let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (signed_distance.abs() + length(a.at.translation));
     let point_error = 2.0 * error + rounding;
-    Separation {
+    let found = Separation {
         bracket: Bracket { lower: signed_distance - error, upper: signed_distance + error },
         signed_distance,
         normal: towards_b,
@@ -74,5 +79,6 @@ pub(super) fn separation(a: Convex, b: Unbounded) -> Separation {
         subshape_a: 0,
         subshape_b: 0,
         cost,
-    }
+    };
+    escalation::settle_wall(&a, &b, goal, found)
 }

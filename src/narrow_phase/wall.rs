@@ -36,8 +36,9 @@ pub(super) fn walk(a: &Piece, wall: Unbounded, goal: &Goal) -> Option<Separation
             Content::Leaf(leaf) => {
                 let triangle = Core::Triangle(*tree.corners(leaf));
                 let (swept_radius, placement_error) = (a.swept_radius, a.placement_error);
-                let convex = Convex { core: &triangle, swept_radius, at: &a.at, placement_error };
-                least.take(Separation { subshape_a: tree.number(leaf), ..unbounded::separation(convex, wall) });
+                let convex = Convex { core: &triangle, swept_radius, at: &a.at, placement_error, given: a.given };
+                let found = unbounded::separation(convex, wall, &least.goal());
+                least.take(Separation { subshape_a: tree.number(leaf), ..found });
             }
             Content::Children(children) => {
                 least.cost.nodes += 1;

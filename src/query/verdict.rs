@@ -19,9 +19,11 @@ impl Verdict {
         Self::Indeterminate(match termination {
             Termination::IterationLimit => Indeterminacy::IterationLimit,
             Termination::TimeLimit => Indeterminacy::TimeLimit,
-            Termination::ClosedForm | Termination::Converged | Termination::Decided | Termination::RoundingFloor => {
-                Indeterminacy::Rounding
-            }
+            Termination::ClosedForm
+            | Termination::Converged
+            | Termination::Decided
+            | Termination::RoundingFloor
+            | Termination::Exact => Indeterminacy::Rounding,
         })
     }
 

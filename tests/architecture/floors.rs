@@ -71,6 +71,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("base64", &[GEOMETRY]),
     ("clap", &["app", "cli", "main"]),
     ("clarabel", &["narrow_phase"]),
+    ("dashu-int", &["narrow_phase"]),
     ("indicatif", &["cli"]),
     ("libm", KERNEL),
     ("nalgebra", KERNEL),

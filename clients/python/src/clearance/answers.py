@@ -44,10 +44,11 @@ class Cost:
     epa_iterations: int
     nodes: int
     pairs: int
+    escalations: int
 
     @classmethod
     def of(cls, cost: messages.Cost) -> Cost:
-        return cls(cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs)
+        return cls(cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs, cost.escalations)
 
 
 @dataclass(frozen=True)

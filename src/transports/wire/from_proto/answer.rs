@@ -90,6 +90,7 @@ fn termination(number: i32) -> Result<Termination, NotAnAnswer> {
         Ok(v1::Termination::RoundingFloor) => Ok(Termination::RoundingFloor),
         Ok(v1::Termination::IterationLimit) => Ok(Termination::IterationLimit),
         Ok(v1::Termination::TimeLimit) => Ok(Termination::TimeLimit),
+        Ok(v1::Termination::Exact) => Ok(Termination::Exact),
         Ok(v1::Termination::Unspecified) | Err(_) => Err(NotAnAnswer("termination")),
     }
 }
@@ -106,6 +107,7 @@ fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
 }
 
 fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
-    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = cost.ok_or(NotAnAnswer("cost"))?;
-    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs })
+    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } =
+        cost.ok_or(NotAnAnswer("cost"))?;
+    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations })
 }

@@ -131,6 +131,7 @@ fn termination(termination: Termination) -> v1::Termination {
         Termination::RoundingFloor => v1::Termination::RoundingFloor,
         Termination::IterationLimit => v1::Termination::IterationLimit,
         Termination::TimeLimit => v1::Termination::TimeLimit,
+        Termination::Exact => v1::Termination::Exact,
     }
 }
 
@@ -149,6 +150,6 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
 }
 
 fn cost(cost: Cost) -> v1::Cost {
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs } = cost;
-    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs }
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = cost;
+    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }
 }

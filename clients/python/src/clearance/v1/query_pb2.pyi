@@ -59,6 +59,7 @@ class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     TERMINATION_ROUNDING_FLOOR: _ClassVar[Termination]
     TERMINATION_ITERATION_LIMIT: _ClassVar[Termination]
     TERMINATION_TIME_LIMIT: _ClassVar[Termination]
+    TERMINATION_EXACT: _ClassVar[Termination]
 SOLVER_UNSPECIFIED: Solver
 SOLVER_DEFAULT: Solver
 SOLVER_FRANK_WOLFE: Solver
@@ -92,6 +93,7 @@ TERMINATION_DECIDED: Termination
 TERMINATION_ROUNDING_FLOOR: Termination
 TERMINATION_ITERATION_LIMIT: Termination
 TERMINATION_TIME_LIMIT: Termination
+TERMINATION_EXACT: Termination
 
 class RevisionRule(_message.Message):
     __slots__ = ("epoch", "latest", "exactly", "at_least")
@@ -300,18 +302,20 @@ class PairAnswer(_message.Message):
     def __init__(self, a: _Optional[_Union[Side, _Mapping]] = ..., b: _Optional[_Union[Side, _Mapping]] = ..., verdict: _Optional[_Union[Verdict, str]] = ..., indeterminacy: _Optional[_Union[Indeterminacy, str]] = ..., bracket: _Optional[_Union[Bracket, _Mapping]] = ..., signed_distance: _Optional[float] = ..., witness: _Optional[_Union[Witness, _Mapping]] = ..., termination: _Optional[_Union[Termination, str]] = ...) -> None: ...
 
 class Cost(_message.Message):
-    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs")
+    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations")
     SUPPORTS_FIELD_NUMBER: _ClassVar[int]
     GJK_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     EPA_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     NODES_FIELD_NUMBER: _ClassVar[int]
     PAIRS_FIELD_NUMBER: _ClassVar[int]
+    ESCALATIONS_FIELD_NUMBER: _ClassVar[int]
     supports: int
     gjk_iterations: int
     epa_iterations: int
     nodes: int
     pairs: int
-    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ...) -> None: ...
+    escalations: int
+    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ..., escalations: _Optional[int] = ...) -> None: ...
 
 class ItemAnswer(_message.Message):
     __slots__ = ("verdict", "indeterminacy", "nearest", "nearest_self", "nearest_scene", "pairs", "truncated", "problem", "cost")

@@ -1,0 +1,28 @@
+//! What was given of a convex piece, before anything was rounded: what exact arithmetic starts from.
+
+use crate::geometry::{Part, Placement, Shape};
+
+/// The numbers behind a piece's rounded placement and radius.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'a> {
+    /// Where the whole shape is, in the frame of both.
+    pub at: &'a Placement,
+    /// The shape, of which the piece may be a part or a triangle.
+    pub whole: &'a Shape,
+    /// The part of the compound `whole` that the piece is.
+    pub part: Option<&'a Part>,
+}
+
+impl<'a> Given<'a> {
+    /// A shape that is not a compound.
+    pub fn alone(shape: &'a Shape, at: &'a Placement) -> Self {
+        Self { at, whole: shape, part: None }
+    }
+
+    /// The radii that are swept over the core: their sum, without rounding, is the piece's. Metres.
+    pub fn radii(&self) -> [f64; 4] {
+        let [whole, rest_of_whole] = self.whole.swept_radius_unrounded();
+        let [part, rest_of_part] = self.part.map_or([0.0; 2], |part| part.shape.swept_radius_unrounded());
+        [whole, rest_of_whole, part, rest_of_part]
+    }
+}
