@@ -34,7 +34,7 @@ const MAX_ROUNDS: u32 = 1000;
 const TIE: f64 = 1.0 + 1.0 / (1u64 << 44) as f64;
 
 /// The depth of the origin in the difference, which some corners of it enclose. None when the rounds ran out or `stop` said so.
-pub(super) fn depth(pair: &Pair, enclosing: Vec<Corner>, stop: &dyn Fn() -> bool) -> Option<Depth> {
+pub(super) fn depth(pair: &mut Pair, enclosing: Vec<Corner>, stop: &dyn Fn() -> bool) -> Option<Depth> {
     let mut hull = match solid_start(pair, enclosing) {
         Ok(corners) => Hull::new(corners, pair.frames.bits)?,
         Err(across) => return Some(Depth::Flat(across)),
@@ -87,7 +87,7 @@ fn foot(hull: &Hull, face: &Face) -> [IBig; 3] {
 
 /// Four corners that span a tetrahedron around or next to the origin, which the given ones have in their hull; else the
 /// direction the difference is flat across, zero when it is a segment or a point.
-fn solid_start(pair: &Pair, mut corners: Vec<Corner>) -> Result<[Corner; 4], Vector> {
+fn solid_start(pair: &mut Pair, mut corners: Vec<Corner>) -> Result<[Corner; 4], Vector> {
     loop {
         let directions = match corners.as_slice() {
             [a, b, c, d] => return Ok([a.clone(), b.clone(), c.clone(), d.clone()]),

@@ -30,7 +30,7 @@ pub(super) struct Feature {
 const MAX_ROUNDS: u32 = 200;
 
 /// None when the rounds ran out or `stop` said so. `toward`: a guess of the direction from the origin to the difference.
-pub(super) fn nearest(pair: &Pair, toward: &Vector, stop: &dyn Fn() -> bool) -> Option<Nearest> {
+pub(super) fn nearest(pair: &mut Pair, toward: &Vector, stop: &dyn Fn() -> bool) -> Option<Nearest> {
     let mut feature = Feature::corner(pair.lowest(toward));
     for _ in 0..MAX_ROUNDS {
         if feature.direction.is_zero() {

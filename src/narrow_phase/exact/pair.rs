@@ -4,8 +4,6 @@
 //! Everything is multiplied by their least common multiple and by the power of two that makes the doubles integers, so
 //! that no fraction is left, and directions and signs are what they were.
 
-use std::cell::Cell;
-
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, Gcd};
 
@@ -122,22 +120,18 @@ pub(super) struct Pair<'a> {
     pub a: Polytope<'a>,
     pub b: Polytope<'a>,
     pub frames: Frames,
-    supports: Cell<u64>,
+    /// How many corners were asked for.
+    pub supports: u64,
 }
 
 impl<'a> Pair<'a> {
     pub fn new(a: Polytope<'a>, b: Polytope<'a>, frames: Frames) -> Self {
-        Self { a, b, frames, supports: Cell::new(0) }
-    }
-
-    /// How many corners were asked for.
-    pub fn supports(&self) -> u64 {
-        self.supports.get()
+        Self { a, b, frames, supports: 0 }
     }
 
     /// The corner of the difference where `direction . w` is least.
-    pub fn lowest(&self, direction: &Vector) -> Corner {
-        self.supports.set(self.supports.get() + 1);
+    pub fn lowest(&mut self, direction: &Vector) -> Corner {
+        self.supports += 1;
         let a = self.a.lowest(direction, self.frames.exponent);
         let b = self.b.lowest(&self.frames.direction_into_b(direction).negated(), self.frames.exponent);
         self.corner(a, b)

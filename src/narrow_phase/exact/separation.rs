@@ -26,18 +26,18 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
     let (core_a, radius_a) = Polytope::of(a.core)?;
     let (core_b, radius_b) = Polytope::of(b.core)?;
     let frames = Frames::new(&a.given, &b.given, core_a.span.union(core_b.span))?;
-    let pair = Pair::new(core_a, core_b, frames);
+    let mut pair = Pair::new(core_a, core_b, frames);
     let radii = [a.given.radii(), b.given.radii(), [radius_a, radius_b, 0.0, 0.0]].concat();
     let toward = Vector::along(-a.at.direction_into(toward));
 
-    let found = match nearest(&pair, &toward, goal.stop)? {
+    let found = match nearest(&mut pair, &toward, goal.stop)? {
         Nearest::Outside(feature) => {
             let bracket = pair.metres(feature.distance()).less(&radii);
             let on_a = pair.mix_on_a(&feature.corners, &feature.weights);
             Found { bracket, direction: Some(feature.direction), on_a }
         }
         Nearest::Inside(enclosing) if goal.depth == goal::Depth::Penetration => {
-            match depth(&pair, enclosing.clone(), goal.stop)? {
+            match depth(&mut pair, enclosing.clone(), goal.stop)? {
                 Depth::Solid { depth, outward, corners, weights } => {
                     let bracket = pair.metres(depth).less(&radii);
                     Found { bracket, direction: Some(outward.negated()), on_a: pair.mix_on_a(&corners, &weights) }
@@ -64,7 +64,7 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
             Found { bracket, direction: None, on_a: pair.middle_on_a(&enclosing) }
         }
     };
-    Some(found.placed(a, toward.unit(), pair.supports()))
+    Some(found.placed(a, toward.unit(), pair.supports))
 }
 
 /// What is known in A's frame.
