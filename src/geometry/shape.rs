@@ -232,7 +232,8 @@ impl Shape {
     /// A factor that is negative or not finite, or lengths beyond the largest accepted.
     pub fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
         length("scale", factor)?;
-        Self::new(self.core.scaled(factor)?, 0.0).swept(self.swept_radius * factor)
+        let scaled = Self::new(self.core.scaled(factor)?, 0.0).swept(self.swept_radius * factor)?;
+        Ok(Self { rest_of_radius: self.rest_of_radius * factor, ..scaled })
     }
 
     /// What the shape is without its swept radius.
