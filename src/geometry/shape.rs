@@ -14,7 +14,7 @@ pub struct Shape {
     core: Core,
     swept_radius: f64,
     /// What rounding took off the swept radius when sweeps were added up.
-    rest_of_radius: f64,
+    rest_of_radius: [f64; 2],
     bounds: Option<Aabb>,
 }
 
@@ -116,7 +116,7 @@ pub(super) fn position(field: impl Fn() -> String, p: Vec3) -> Result<Vec3, Inva
 impl Shape {
     fn new(core: Core, swept_radius: f64) -> Self {
         let bounds = core.bounds().map(|b| b.grown(swept_radius));
-        Self { core, swept_radius, rest_of_radius: 0.0, bounds }
+        Self { core, swept_radius, rest_of_radius: [0.0; 2], bounds }
     }
 
     /// A ball. # Errors: a negative or non-finite radius.
@@ -218,12 +218,14 @@ impl Shape {
     /// # Errors
     /// A negative or non-finite radius.
     pub fn swept(&self, extra: f64) -> Result<Self, InvalidShape> {
-        let (before, extra) = (self.swept_radius, length("swept_radius", extra)?);
-        let radius = length("swept_radius", before + extra)?;
-        // What the sum lost, without rounding (Knuth's two-sum).
-        let of_extra = radius - before;
-        let lost = (before - (radius - of_extra)) + (extra - of_extra);
-        Ok(Self { rest_of_radius: self.rest_of_radius + lost, ..Self::new(self.core.clone(), radius) })
+        let extra = length("swept_radius", extra)?;
+        // Without rounding, from the smallest part up (Shewchuk 1997); what a third sweep leaves may round at 2^-159.
+        let [large, small] = self.rest_of_radius;
+        let (sum, least) = two_sum(extra, small);
+        let (sum, less) = two_sum(sum, large);
+        let (radius, most) = two_sum(sum, self.swept_radius);
+        let radius = length("swept_radius", radius)?;
+        Ok(Self { rest_of_radius: [most, less + least], ..Self::new(self.core.clone(), radius) })
     }
 
     /// The same shape with every length multiplied by `factor` about its origin, swept radius included.
@@ -233,7 +235,7 @@ impl Shape {
     pub fn scaled(&self, factor: f64) -> Result<Self, InvalidShape> {
         length("scale", factor)?;
         let scaled = Self::new(self.core.scaled(factor)?, 0.0).swept(self.swept_radius * factor)?;
-        Ok(Self { rest_of_radius: self.rest_of_radius * factor, ..scaled })
+        Ok(Self { rest_of_radius: self.rest_of_radius.map(|rest| rest * factor), ..scaled })
     }
 
     /// What the shape is without its swept radius.
@@ -248,11 +250,12 @@ impl Shape {
         self.swept_radius
     }
 
-    /// Two numbers whose sum, not rounded, is the radius of the ball swept over the core, metres: a capsule of radius 0.1 with
-    /// a margin of 0.2 has neither 0.3 nor the double next to it. Beyond two sweeps the second number is rounded itself.
+    /// Numbers whose sum, not rounded, is the radius of the ball swept over the core, metres: a capsule of radius 0.1 with a
+    /// margin of 0.2 has neither 0.3 nor the double next to it. The first is [`Self::swept_radius`].
     #[must_use]
-    pub fn swept_radius_unrounded(&self) -> [f64; 2] {
-        [self.swept_radius, self.rest_of_radius]
+    pub fn swept_radius_unrounded(&self) -> [f64; 3] {
+        let [large, small] = self.rest_of_radius;
+        [self.swept_radius, large, small]
     }
 
     /// Name of the kind, as in case files and on the wire.
@@ -340,6 +343,13 @@ impl Core {
             Self::Compound(compound) => Some(compound.bounds()),
         }
     }
+}
+
+/// The sum and what rounding took off it (Knuth).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 fn plane_equation(normal: Vec3, offset: f64) -> Result<(Vec3, f64), InvalidShape> {

@@ -20,9 +20,9 @@ impl<'a> Given<'a> {
     }
 
     /// The radii that are swept over the core: their sum, without rounding, is the piece's. Metres.
-    pub fn radii(&self) -> [f64; 4] {
-        let [whole, rest_of_whole] = self.whole.swept_radius_unrounded();
-        let [part, rest_of_part] = self.part.map_or([0.0; 2], |part| part.shape.swept_radius_unrounded());
-        [whole, rest_of_whole, part, rest_of_part]
+    pub fn radii(&self) -> [f64; 6] {
+        let [a, b, c] = self.whole.swept_radius_unrounded();
+        let [d, e, f] = self.part.map_or([0.0; 3], |part| part.shape.swept_radius_unrounded());
+        [a, b, c, d, e, f]
     }
 }

@@ -10,6 +10,7 @@ mod box_gaps;
 mod bracketing;
 mod convex;
 mod course;
+mod double_double;
 mod epa;
 mod escalation;
 mod exact;

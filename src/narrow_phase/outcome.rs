@@ -14,6 +14,12 @@ pub struct Bracket {
 }
 
 impl Bracket {
+    /// What is in both: they are about the same truth.
+    #[must_use]
+    pub(super) fn intersection(&self, other: &Self) -> Self {
+        Self { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) }
+    }
+
     /// Width, metres.
     #[must_use]
     pub fn width(&self) -> f64 {

@@ -26,6 +26,16 @@ pub(super) struct Unbounded<'a> {
     pub given: Given<'a>,
 }
 
+/// How far a body is above a wall, as a higher precision finds it.
+pub(super) struct Height {
+    /// Of the signed distance, metres.
+    pub bracket: Bracket,
+    /// The point of the body's core that is lowest, in its own frame; metres.
+    pub point: Vec3,
+    /// 1 where the body is on the side the wall's normal points to, -1 on the other side of a plane.
+    pub side: f64,
+}
+
 impl Unbounded<'_> {
     /// The unit normal, and the offset in metres along it.
     pub fn upright(&self) -> (Vec3, f64) {

@@ -157,7 +157,7 @@ fn a_power_of_two_beyond_all_use_scales_the_bracket() {
 
 /// Whether the swept radius is a double, so that another shape can be swept by the same.
 fn has_double_radius(specimen: &Specimen) -> bool {
-    specimen.shape.swept_radius_unrounded()[1] == 0.0
+    specimen.shape.swept_radius_unrounded()[1..] == [0.0; 2]
 }
 
 fn hull_points(specimen: &Specimen) -> Option<Vec<[f64; 3]>> {

@@ -11,7 +11,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Double2 {
+pub(super) struct DoubleDouble {
     high: f64,
     low: f64,
 }
@@ -44,7 +44,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((ah * bh - product) + ah * bl + al * bh) + al * bl)
 }
 
-impl Double2 {
+impl DoubleDouble {
     pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
     pub const ONE: Self = Self { high: 1.0, low: 0.0 };
 
@@ -94,20 +94,20 @@ impl Double2 {
     }
 }
 
-impl From<f64> for Double2 {
+impl From<f64> for DoubleDouble {
     fn from(high: f64) -> Self {
         Self { high, low: 0.0 }
     }
 }
 
-impl Neg for Double2 {
+impl Neg for DoubleDouble {
     type Output = Self;
     fn neg(self) -> Self {
         Self { high: -self.high, low: -self.low }
     }
 }
 
-impl Add for Double2 {
+impl Add for DoubleDouble {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let (high, low) = two_sum(self.high, other.high);
@@ -118,14 +118,14 @@ impl Add for Double2 {
     }
 }
 
-impl Sub for Double2 {
+impl Sub for DoubleDouble {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Mul for Double2 {
+impl Mul for DoubleDouble {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let (high, low) = two_product(self.high, other.high);
@@ -134,7 +134,7 @@ impl Mul for Double2 {
     }
 }
 
-impl Div for Double2 {
+impl Div for DoubleDouble {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
@@ -146,7 +146,7 @@ impl Div for Double2 {
     }
 }
 
-impl PartialOrd for Double2 {
+impl PartialOrd for DoubleDouble {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         match self.high.partial_cmp(&other.high) {
             Some(Ordering::Equal) => self.low.partial_cmp(&other.low),
@@ -162,7 +162,7 @@ mod tests {
     use dashu_int::ops::{Abs, BitTest};
 
     /// The number as an integer times 2^-400; its parts must not go below that.
-    fn exact(x: Double2) -> IBig {
+    fn exact(x: DoubleDouble) -> IBig {
         let part = |x: f64| {
             let bits = x.abs().to_bits();
             let (exponent, fraction) = ((bits >> 52) as i64, bits & ((1 << 52) - 1));
@@ -178,7 +178,7 @@ mod tests {
         part(x.high) + part(x.low)
     }
 
-    fn samples() -> Vec<Double2> {
+    fn samples() -> Vec<DoubleDouble> {
         let mut state = 12345u64;
         let mut next = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -188,14 +188,14 @@ mod tests {
             .map(|i| {
                 let scale = [1.0, 1e-8, 1e6, 3e-15][i % 4];
                 let (high, low) = two_sum(next() * scale, next() * scale * [1e-17, 1e-25, 0.0][i % 3]);
-                Double2 { high, low }
+                DoubleDouble { high, low }
             })
             .collect()
     }
 
     #[test]
     fn every_operation_is_within_its_roundoff() {
-        let off = |result: Double2, truth: IBig, what: &str| {
+        let off = |result: DoubleDouble, truth: IBig, what: &str| {
             // 2^-102 of the truth, and what cutting at 2^-400 takes.
             let allowed = (truth.clone().abs() >> 102) + IBig::from(4);
             assert!((exact(result) - truth).abs() <= allowed, "{what}: {result:?}");
@@ -208,7 +208,7 @@ mod tests {
             off(a + b, &ea + &eb, "sum");
             off(a - b, &ea - &eb, "difference");
             off(a * b, (&ea * &eb) >> 400, "product");
-            if b.abs() > Double2::from(1e-20) {
+            if b.abs() > DoubleDouble::from(1e-20) {
                 off(a / b, (&ea << 400) / &eb, "quotient");
             }
             let root = a.abs().sqrt();
@@ -216,17 +216,20 @@ mod tests {
             let allowed = (exact(a.abs()) >> 101) + IBig::from(4);
             assert!((square - exact(a.abs())).abs() <= allowed, "root of {a:?}");
         }
-        assert_eq!(exact(Double2::ONE), one);
+        assert_eq!(exact(DoubleDouble::ONE), one);
         assert!(one.bit_len() == 401);
     }
 
     #[test]
     fn differences_of_doubles_are_exact_and_rounding_is_directed() {
-        let d = Double2::difference(1.0, 1e-20);
+        let d = DoubleDouble::difference(1.0, 1e-20);
         assert_eq!((d.floor(), d.ceil(), d.to_f64()), (1.0f64.next_down(), 1.0, 1.0));
-        assert_eq!((Double2::from(0.3).floor(), Double2::from(0.3).ceil()), (0.3, 0.3));
-        assert!(Double2::difference(1e-20, 1.0) < Double2::from(-1.0).scaled(0.999));
-        assert!((Double2::from(2.0).sqrt() * Double2::from(2.0).sqrt() - Double2::from(2.0)).abs().to_f64() < 1e-31);
-        assert_eq!(Double2::from(-1.0).sqrt(), Double2::ZERO);
+        assert_eq!((DoubleDouble::from(0.3).floor(), DoubleDouble::from(0.3).ceil()), (0.3, 0.3));
+        assert!(DoubleDouble::difference(1e-20, 1.0) < DoubleDouble::from(-1.0).scaled(0.999));
+        assert!(
+            (DoubleDouble::from(2.0).sqrt() * DoubleDouble::from(2.0).sqrt() - DoubleDouble::from(2.0)).abs().to_f64()
+                < 1e-31
+        );
+        assert_eq!(DoubleDouble::from(-1.0).sqrt(), DoubleDouble::ZERO);
     }
 }

@@ -20,4 +20,4 @@ mod wall;
 mod tests;
 
 pub(super) use separation::separation;
-pub(super) use wall::{Height, height};
+pub(super) use wall::height;

@@ -27,7 +27,7 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
     let (core_b, radius_b) = Polytope::of(b.core)?;
     let frames = Frames::new(&a.given, &b.given, core_a.span.union(core_b.span))?;
     let mut pair = Pair::new(core_a, core_b, frames);
-    let radii = [a.given.radii(), b.given.radii(), [radius_a, radius_b, 0.0, 0.0]].concat();
+    let radii = [&a.given.radii()[..], &b.given.radii(), &[radius_a, radius_b]].concat();
     let toward = Vector::along(-a.at.direction_into(toward));
 
     let found = match nearest(&mut pair, &toward, goal.stop)? {

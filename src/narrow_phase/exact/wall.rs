@@ -7,20 +7,8 @@ use super::pair::{Frames, MOST_BITS};
 use super::polytope::Polytope;
 use super::root::{Root, compare};
 use super::vector::Vector;
-use crate::geometry::Vec3;
 use crate::narrow_phase::convex::Convex;
-use crate::narrow_phase::outcome::Bracket;
-use crate::narrow_phase::unbounded::Unbounded;
-
-/// What is known exactly of a body and a wall.
-pub(in crate::narrow_phase) struct Height {
-    /// The signed distance.
-    pub bracket: Bracket,
-    /// The corner of the body that decides, in its own frame.
-    pub corner: Vec3,
-    /// 1 where the body is on the side the wall's normal points to, -1 on the other side of a plane.
-    pub side: f64,
-}
+use crate::narrow_phase::unbounded::{Height, Unbounded};
 
 /// None where no rational answer is to be had, as for [`super::separation`].
 pub(in crate::narrow_phase) fn height(a: &Convex, wall: &Unbounded) -> Option<Height> {
@@ -60,6 +48,6 @@ pub(in crate::narrow_phase) fn height(a: &Convex, wall: &Unbounded) -> Option<He
             (best, corner, side) = (below, highest, -1.0);
         }
     }
-    let radii = [a.given.radii(), wall.given.radii(), [radius, 0.0, 0.0, 0.0]].concat();
-    Some(Height { bracket: best.less(&radii), corner: body.corner(corner), side })
+    let radii = [&a.given.radii()[..], &wall.given.radii(), &[radius]].concat();
+    Some(Height { bracket: best.less(&radii), point: body.corner(corner), side })
 }
