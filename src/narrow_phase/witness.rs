@@ -1,6 +1,10 @@
 //! How far the witness points and the normal may be from the truth; derived in `docs/derivations/bracket.md`.
 
+use super::convex::Convex;
 use super::epa::Epa;
+use super::support::radius;
+use crate::geometry::length;
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 
 /// Roundings of a witness point after the cores are done with, in units of the radii and of how far A is from the origin: two
 /// products with the normal and two sums, and the turn of the normal into the frame of both.
@@ -26,6 +30,14 @@ pub(super) fn normal_error(lower: f64, upper: f64) -> f64 {
 pub(super) fn point_error(found: &Epa, distance: f64, error: f64) -> f64 {
     let short = (found.nearest.w - found.direction * distance).norm();
     short + from_nearest(found.lower, found.upper) + 2.0 * error
+}
+
+/// How far a witness point of a higher precision may be off by its way back into doubles, metres: found in the frame of A's core
+/// it is rounded, turned, shifted, and moved along the normal by the radius and the distance.
+pub(super) fn rounding_of_points(a: &Convex, b: &Convex, signed_distance: f64) -> f64 {
+    let extent = radius(a.core) + radius(b.core) + length(b.at.translation - a.at.translation);
+    let lengths = a.swept_radius + b.swept_radius + length(a.at.translation) + signed_distance.abs();
+    UNIT_ROUNDOFF * (SUPPORT_ERROR_ULPS * extent + WITNESS_ERROR_ULPS * lengths)
 }
 
 /// How far a point of the difference no farther than `upper` may be from x*, when the cores are proved apart.

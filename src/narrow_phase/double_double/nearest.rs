@@ -14,6 +14,7 @@ use crate::narrow_phase::convex::Convex;
 use crate::narrow_phase::goal::Goal;
 use crate::narrow_phase::outcome::{Bracket, Cost, Separation, Termination};
 use crate::narrow_phase::support::radius;
+use crate::narrow_phase::witness;
 
 /// Rounds at most. Smooth pairs need some 100 to use all digits.
 const MAX_ROUNDS: u32 = 250;
@@ -63,7 +64,7 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
         }
     }
     let known = bracket(&search.frames, best.lower, best.upper, &radii);
-    Some(best.placed(a, &search, known, goal))
+    Some(best.placed(&search, known, goal))
 }
 
 struct Search<'a> {
@@ -107,10 +108,19 @@ impl Best {
         }
     }
 
-    fn placed(&self, a: &Convex, search: &Search, bracket: Bracket, goal: &Goal) -> Separation {
+    fn placed(&self, search: &Search, bracket: Bracket, goal: &Goal) -> Separation {
+        let (a, b) = (search.a, search.b);
+        let Frames { error, scale, .. } = search.frames;
+        let (lower, upper) = (self.lower.to_f64() - error, self.upper.to_f64() + error);
         let signed_distance = bracket.lower + 0.5 * bracket.width();
         let normal = a.at.direction(-self.direction.rounded());
-        let point_on_a = a.at.point(self.nearest.on_a.rounded() / search.frames.scale) + normal * a.swept_radius;
+        let point_on_a = a.at.point(self.nearest.on_a.rounded() / scale) + normal * a.swept_radius;
+        let distance = DoubleDouble::from((signed_distance + a.swept_radius + b.swept_radius) * scale);
+        let short = (self.nearest.w - self.direction * distance).norm().to_f64();
+        let from_nearest = witness::from_nearest(lower, upper);
+        let normal_error = witness::normal_error(lower, upper);
+        let radii = (a.swept_radius + b.swept_radius) * normal_error.min(2.0);
+        let rounding = witness::rounding_of_points(a, b, signed_distance);
         let met = goal.accuracy.is_met(&bracket);
         Separation {
             bracket,
@@ -118,6 +128,8 @@ impl Best {
             normal,
             point_on_a,
             point_on_b: point_on_a + normal * signed_distance,
+            point_error: (short + from_nearest + 2.0 * error) / scale + radii + rounding,
+            normal_error,
             termination: if met { Termination::Converged } else { Termination::RoundingFloor },
             subshape_a: 0,
             subshape_b: 0,

@@ -212,7 +212,7 @@ mod tests {
                 off(a / b, (&ea << 400) / &eb, "quotient");
             }
             let root = a.abs().sqrt();
-            let square = exact(root) * exact(root) >> 400;
+            let square = (exact(root) * exact(root)) >> 400;
             let allowed = (exact(a.abs()) >> 101) + IBig::from(4);
             assert!((square - exact(a.abs())).abs() <= allowed, "root of {a:?}");
         }

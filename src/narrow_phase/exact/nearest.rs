@@ -84,6 +84,20 @@ impl Feature {
     }
 }
 
+/// Weights, not negative, that mix the origin from corners whose hull holds it.
+pub(super) fn weights_of_origin(corners: &[Corner]) -> Vec<IBig> {
+    match corners {
+        [a, b] => segment(a, b).weights,
+        [a, b, c] => triangle(a, b, c).weights,
+        [a, b, c, d] => {
+            let volume = |p: &Corner, q: &Corner, r: &Corner| p.w.dot(&q.w.cross(&r.w));
+            let volumes = [volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)];
+            volumes.into_iter().map(|v| if v < IBig::ZERO { -v } else { v }).collect()
+        }
+        _ => vec![IBig::ONE; corners.len()],
+    }
+}
+
 fn segment(a: &Corner, b: &Corner) -> Feature {
     let along = b.w.minus(&a.w);
     // How far the foot of the origin is from either end.

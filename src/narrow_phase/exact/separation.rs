@@ -5,15 +5,22 @@ use dashu_int::ops::BitTest;
 
 use super::depth::{Depth, depth};
 use super::integers::approximate;
-use super::nearest::{Nearest, nearest};
+use super::nearest::{Nearest, nearest, weights_of_origin};
 use super::pair::{Corner, Frames, Pair};
 use super::polytope::Polytope;
 use super::root::Root;
 use super::vector::Vector;
+use std::f64::consts::PI;
+
 use crate::geometry::Vec3;
 use crate::narrow_phase::convex::Convex;
 use crate::narrow_phase::goal::{self, Goal};
 use crate::narrow_phase::outcome::{Bracket, Cost, Separation, Termination};
+use crate::narrow_phase::support::radius;
+use crate::narrow_phase::witness;
+
+/// Rounding of a direction to doubles and its turn into the frame of both, radians.
+const DIRECTION_ERROR: f64 = witness::WITNESS_ERROR_ULPS * f64::EPSILON;
 
 /// The signed distance of two rounded polytopes, with a bracket whose ends are next to each other, or equal where the
 /// distance is a double. An overlap is measured if the goal asks for it and only proved otherwise.
@@ -34,19 +41,27 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
         Nearest::Outside(feature) => {
             let bracket = pair.metres(feature.distance()).less(&radii);
             let on_a = pair.mix_on_a(&feature.corners, &feature.weights);
-            Found { bracket, direction: Some(feature.direction), on_a }
+            Found { bracket, direction: Some(feature.direction), on_a, normal_error: DIRECTION_ERROR, point_error: 0.0 }
         }
         Nearest::Inside(enclosing) if goal.depth == goal::Depth::Penetration => {
             match depth(&mut pair, enclosing.clone(), goal.stop)? {
                 Depth::Solid { depth, outward, corners, weights } => {
                     let bracket = pair.metres(depth).less(&radii);
-                    Found { bracket, direction: Some(outward.negated()), on_a: pair.mix_on_a(&corners, &weights) }
+                    let on_a = pair.mix_on_a(&corners, &weights);
+                    Found { bracket, direction: Some(outward.negated()), on_a, normal_error: PI, point_error: 0.0 }
                 }
                 Depth::Flat(across) => {
                     // Either side will do: the one the guess was on.
                     let across = if across.dot(&toward) < IBig::ZERO { across.negated() } else { across };
                     let direction = (!across.is_zero()).then_some(across);
-                    Found { bracket: Root::zero().less(&radii), direction, on_a: pair.middle_on_a(&enclosing) }
+                    let bracket = Root::zero().less(&radii);
+                    Found {
+                        bracket,
+                        direction,
+                        on_a: pair.shared_point(&enclosing),
+                        normal_error: PI,
+                        point_error: 0.0,
+                    }
                 }
             }
         }
@@ -61,10 +76,12 @@ pub(in crate::narrow_phase) fn separation(a: &Convex, b: &Convex, toward: Vec3, 
             };
             let lower = pair.metres(bound).less(&radii).lower;
             let bracket = Bracket { lower, upper: Root::zero().less(&radii).upper };
-            Found { bracket, direction: None, on_a: pair.middle_on_a(&enclosing) }
+            // A shared point says nothing of the boundaries.
+            let point_error = radius(a.core) + radius(b.core) + bracket.width();
+            Found { bracket, direction: None, on_a: pair.shared_point(&enclosing), normal_error: PI, point_error }
         }
     };
-    Some(found.placed(a, toward.unit(), pair.supports))
+    Some(found.placed(a, b, toward.unit(), pair.supports))
 }
 
 /// What is known in A's frame.
@@ -74,10 +91,13 @@ struct Found {
     direction: Option<Vector>,
     /// Metres.
     on_a: Vec3,
+    normal_error: f64,
+    /// But for rounding, metres.
+    point_error: f64,
 }
 
 impl Found {
-    fn placed(self, a: &Convex, guess: Vec3, supports: u64) -> Separation {
+    fn placed(self, a: &Convex, b: &Convex, guess: Vec3, supports: u64) -> Separation {
         let direction = self.direction.map_or(guess, |direction| direction.unit());
         let direction = if direction == Vec3::zeros() { Vec3::x() } else { direction };
         let signed_distance = self.bracket.lower + 0.5 * self.bracket.width();
@@ -89,6 +109,8 @@ impl Found {
             normal,
             point_on_a,
             point_on_b: point_on_a + normal * signed_distance,
+            point_error: self.point_error + witness::rounding_of_points(a, b, signed_distance),
+            normal_error: self.normal_error,
             termination: Termination::Exact,
             subshape_a: 0,
             subshape_b: 0,
@@ -113,8 +135,8 @@ impl Pair<'_> {
         corners.iter().zip(weights).map(|(corner, w)| self.a.corner(corner.a) * (w / sum)).sum()
     }
 
-    /// The middle of the corners' points of A.
-    fn middle_on_a(&self, corners: &[Corner]) -> Vec3 {
-        self.mix_on_a(corners, &vec![IBig::ONE; corners.len()])
+    /// A point of both: what mixes the origin from the corners mixes it from their points of A.
+    fn shared_point(&self, enclosing: &[Corner]) -> Vec3 {
+        self.mix_on_a(enclosing, &weights_of_origin(enclosing))
     }
 }
