@@ -2,14 +2,14 @@
 //!
 //! Nearly every bracket decides what was asked of it, and pays one comparison here. One that straddles contact or the margin
 //! is worked out again in double-doubles, and where those straddle it too and both cores are polytopes, in exact
-//! arithmetic. What met the cap on iterations goes the same way.
+//! arithmetic. What met the cap on iterations is first looked at as bodies of revolution, which are what meets it.
 
 use super::convex::Convex;
 use super::goal::{Depth, Goal};
 use super::outcome::{Bracket, Separation, Termination};
 use super::solver::Solver;
 use super::unbounded::{Height, Unbounded};
-use super::{double_double, exact};
+use super::{double_double, exact, revolution};
 
 /// `found`, or something narrower where that leaves the question open.
 #[inline]
@@ -32,6 +32,9 @@ fn is_undecided(goal: &Goal, bracket: &Bracket) -> bool {
 #[cold]
 fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separation {
     found.cost.escalations += 1;
+    if found.termination == Termination::IterationLimit {
+        found = revolution::narrowed(a, b, goal, found);
+    }
     if is_undecided(goal, &found.bracket)
         && let Some(more) = double_double::separation(a, b, found.normal, goal)
     {

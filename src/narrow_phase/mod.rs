@@ -29,6 +29,7 @@ mod pair_cache;
 mod pieces;
 mod polytope;
 mod qp;
+mod revolution;
 mod sat;
 mod sat_boxes;
 mod sat_polytopes;

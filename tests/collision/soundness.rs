@@ -93,10 +93,10 @@ fn check(pair: &Pair, number: usize, cache: &mut PairCache, tally: &mut Tally) {
     for goal in [&full, &other, &full] {
         answers.push((goal, ask_again(&pair.a, &pair.b, goal, cache)));
     }
-    // Exact answers have no width, but the oracle has.
+    // Escalated answers may have no width, but the oracle has: sharper than doubles is enough.
     let widths = answers.iter().map(|(_, found)| {
         let size = pair.a.body.core.reach() + pair.b.body.core.reach();
-        found.bracket.width().max(f64::EPSILON * found.bracket.upper.abs()).max(1e-25 * size)
+        found.bracket.width().max(f64::EPSILON * found.bracket.upper.abs()).max(1e-16 * size)
     });
     let narrowest = widths.fold(f64::INFINITY, f64::min);
     let truth = truth(&pair.a.body, &pair.b.body, 1e-3 * narrowest, 400);
