@@ -245,10 +245,10 @@ mod tests {
 
     #[test]
     fn cylinders_about_parallel_axes_are_as_deep_as_their_sum() {
-        for across in [0.0, 1e-13, 1e-9, 1e-5, 0.1] {
-            for (half_length, along) in [(0.9, 0.0), (0.9, -0.3), (0.2, 0.1)] {
+        for across in [0.0_f64, 1e-13, 1e-9, 1e-5, 0.1] {
+            for (half_length, along) in [(0.9_f64, 0.0_f64), (0.9, -0.3), (0.2, 0.1)] {
                 let (a, b) = (Shape::cylinder(0.3, 0.7).unwrap(), Shape::cylinder(0.25, half_length).unwrap());
-                let depth = (0.55 - across).min(0.7 + half_length - f64::abs(along));
+                let depth = f64::min(0.55 - across, 0.7 + half_length - f64::abs(along));
                 assert_depth(&a, &b, Vec3::new(across, 0.0, along), depth);
             }
         }
