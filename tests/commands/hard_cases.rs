@@ -135,7 +135,7 @@ fn verdicts_follow_from_brackets_and_are_withheld_only_where_the_bracket_straddl
     for (verdict, least) in [("FREE", 500), ("COLLISION", 500), ("INDETERMINATE", 1)] {
         assert!(scored.iter().filter(|s| s.answer["verdict"] == verdict).count() >= least, "{verdict}");
     }
-    assert!(scored.iter().filter(|s| s.answer["termination"] == "EXACT").count() > 80);
+    assert!(scored.iter().filter(|s| s.answer["termination"] == "EXACT").count() > 50);
 }
 
 #[test]
