@@ -4,7 +4,7 @@
 //!
 //! Prints the tables of `docs/acceleration.md`. They count work, not time, so they are the same on every machine.
 
-use clearance::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
+use clearance::geometry::{InvalidShape, Placement, Pose, Quaternion, Shape, Vec3};
 use clearance::narrow_phase::{Accuracy, Depth, Goal, Solver, Termination, separation};
 
 /// Solvers that take every shape.
@@ -63,32 +63,45 @@ impl Random {
 enum Family {
     Box,
     Hull(usize),
+    BallAndHull,
+    CylinderAndCone,
     Ellipsoid,
 }
 
 impl Family {
-    const ALL: [Self; 6] =
-        [Self::Box, Self::Hull(8), Self::Hull(64), Self::Hull(250), Self::Hull(940), Self::Ellipsoid];
+    const ALL: [Self; 8] = [
+        Self::Box,
+        Self::Hull(8),
+        Self::Hull(64),
+        Self::Hull(250),
+        Self::Hull(940),
+        Self::BallAndHull,
+        Self::CylinderAndCone,
+        Self::Ellipsoid,
+    ];
 
     fn name(self) -> String {
         match self {
             Self::Box => "boxes".to_owned(),
             Self::Hull(points) => format!("hulls of {points}"),
+            Self::BallAndHull => "ball and hull of 250".to_owned(),
+            Self::CylinderAndCone => "cylinder and cone".to_owned(),
             Self::Ellipsoid => "ellipsoids".to_owned(),
         }
     }
 
-    fn shape(self, random: &mut Random) -> Shape {
-        let radii = random.radii();
-        let shape = match self {
-            Self::Box => Shape::cuboid(radii),
-            Self::Ellipsoid => Shape::ellipsoid(radii),
-            Self::Hull(points) => {
-                let points: Vec<Vec3> = (0..points).map(|_| random.direction().component_mul(&radii)).collect();
-                Shape::convex(&points)
+    fn shapes(self, random: &mut Random) -> [Shape; 2] {
+        let shapes = match self {
+            Self::Box => [(); 2].map(|()| Shape::cuboid(random.radii())),
+            Self::Ellipsoid => [(); 2].map(|()| Shape::ellipsoid(random.radii())),
+            Self::Hull(points) => [(); 2].map(|()| hull(points, random)),
+            Self::BallAndHull => [Shape::sphere(random.between(0.3, 1.0)), hull(250, random)],
+            Self::CylinderAndCone => {
+                let [a, b] = [(); 2].map(|()| random.radii());
+                [Shape::cylinder(a.x, a.y), Shape::cone(b.x, b.y)]
             }
         };
-        shape.expect("sizes are positive")
+        shapes.map(|shape| shape.expect("sizes are positive"))
     }
 
     /// Two shapes, turned at random, whose signed distance is `gap` metres somewhere on a random line of approach.
@@ -102,7 +115,7 @@ impl Family {
 
     /// None when the line of approach passes by.
     fn try_pair(self, gap: f64, random: &mut Random) -> Option<Pair> {
-        let (a, b) = (self.shape(random), self.shape(random));
+        let [a, b] = self.shapes(random);
         let pose = |t, q| Pose::new(t, q).expect("components are finite").placement();
         let (at_a, turn, approach) = (pose(Vec3::zeros(), random.rotation()), random.rotation(), random.direction());
         let mut far = 4.0;
@@ -121,6 +134,13 @@ impl Family {
         }
         None
     }
+}
+
+/// The hull of so many points on an ellipsoid.
+fn hull(points: usize, random: &mut Random) -> Result<Shape, InvalidShape> {
+    let radii = random.radii();
+    let points: Vec<Vec3> = (0..points).map(|_| random.direction().component_mul(&radii)).collect();
+    Shape::convex(&points)
 }
 
 /// Mean support calls until the goal, and how many of the pairs did not reach it.

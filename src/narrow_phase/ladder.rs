@@ -66,7 +66,7 @@ fn by_choice(chosen: Solver, difference: &mut Difference, target: &Target, cost:
             None => by_gjk(difference, centers, Plain, target, cost),
         },
         Solver::GjkPolyak | Solver::GjkNesterov | Solver::GjkNesterovNormalised => {
-            by_gjk(difference, centers, Momentum::new(chosen), target, cost)
+            by_gjk(difference, centers, Momentum::new(chosen, centers), target, cost)
         }
         Solver::Default | Solver::Gjk => by_gjk(difference, centers, Plain, target, cost),
     }

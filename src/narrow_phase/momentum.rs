@@ -56,21 +56,23 @@ enum Rule {
 pub(super) struct Momentum {
     /// None: plain GJK by now.
     rule: Option<Rule>,
-    /// The last direction, of the length its rule gave it; the first is the first vertex.
-    last: Option<Vec3>,
+    /// The last direction, of the length its rule gave it.
+    last: Vec3,
+    /// Directions so far.
     round: u32,
 }
 
 impl Momentum {
-    /// The one that the solver is named after.
-    pub fn new(solver: Solver) -> Self {
+    /// The one that the solver is named after, of a search whose first direction is `first`: of the length of a nearest point that
+    /// one would guess.
+    pub fn new(solver: Solver, first: Vec3) -> Self {
         let rule = match solver {
             Solver::GjkPolyak => Some(Rule::Polyak),
             Solver::GjkNesterov => Some(Rule::Nesterov),
             Solver::GjkNesterovNormalised => Some(Rule::NesterovNormalised),
             Solver::Default | Solver::FrankWolfe | Solver::Gjk | Solver::Sat | Solver::Qp => None,
         };
-        Self { rule, last: None, round: 0 }
+        Self { rule, last: first, round: 1 }
     }
 }
 
@@ -82,7 +84,7 @@ impl Steering for Momentum {
         let rule = self.rule?;
         let k = f64::from(self.round);
         self.round += 1;
-        let last = self.last.unwrap_or(w);
+        let last = self.last;
         let mixed = match rule {
             Rule::Polyak => mix(1.0 / (k + 1.0), last, x),
             Rule::Nesterov => {
@@ -94,7 +96,7 @@ impl Steering for Momentum {
                 mix(weight, unit(last)?, unit(mix(weight, x, w))?)
             }
         };
-        self.last = Some(mixed);
+        self.last = mixed;
         Some(mixed)
     }
 
@@ -114,31 +116,31 @@ mod tests {
 
     #[test]
     fn weights_are_those_of_the_sources() {
-        let (x, first, w) = (Vec3::x(), Vec3::z(), Vec3::y());
+        let (x, w, first) = (Vec3::x(), Vec3::y(), Vec3::z());
         let third = |solver| {
-            let mut momentum = Momentum::new(solver);
-            [first, w, w].map(|vertex| momentum.direction(x, vertex))[2]
+            let mut momentum = Momentum::new(solver, first);
+            [x, x].map(|x| momentum.direction(x, w))[1]
         };
-        // Polyak: z, then (z + x)/2, then a third of that and two of x.
+        // Polyak, k = 1, 2: half of the first and of x, then a third of that and two of x.
         let expected = first / 6.0 + x * (1.0 / 6.0 + 2.0 / 3.0);
         assert!((third(Solver::GjkPolyak).unwrap() - expected).norm() < 1e-15);
-        // Nesterov, k = 0, 1, 2: weights 1/3, 1/2, 3/5.
-        let (y0, y1, y2) = (x / 3.0 + first * (2.0 / 3.0), (x + w) / 2.0, x * 0.6 + w * 0.4);
-        let expected = ((first / 3.0 + y0 * (2.0 / 3.0)) + y1) * 0.5 * 0.6 + y2 * 0.4;
+        // Nesterov, k = 1, 2: weights 1/2 and 3/5.
+        let (y1, y2) = ((x + w) / 2.0, x * 0.6 + w * 0.4);
+        let expected = (first + y1) * 0.5 * 0.6 + y2 * 0.4;
         assert!((third(Solver::GjkNesterov).unwrap() - expected).norm() < 1e-15);
         assert!(third(Solver::Gjk).is_none());
     }
 
     #[test]
     fn normalised_directions_do_not_depend_on_lengths_and_end() {
-        let mut one = Momentum::new(Solver::GjkNesterovNormalised);
-        let mut other = one;
+        let mut one = Momentum::new(Solver::GjkNesterovNormalised, Vec3::z());
+        let mut other = Momentum::new(Solver::GjkNesterovNormalised, Vec3::z() * 1e9);
         let (x, w) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-2.0, 0.5, 1.0));
-        for _ in 0..LONGEST {
+        for _ in 1..LONGEST {
             let (a, b) = (one.direction(x, w).unwrap(), other.direction(x * 1e-6, w * 1e-6).unwrap());
             assert!((a - b).norm() < 1e-14);
         }
         assert!(one.direction(x, w).is_none() && !one.gave_up());
-        assert!(Momentum::new(Solver::GjkPolyak).gave_up());
+        assert!(Momentum::new(Solver::GjkPolyak, Vec3::z()).gave_up());
     }
 }
