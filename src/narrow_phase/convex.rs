@@ -13,6 +13,7 @@ use super::outcome::{Cost, Separation, Termination};
 use super::pair_cache::PairCache;
 use super::polytope::inner_ball;
 use super::segments;
+use super::solver::Solver;
 use super::support::radius;
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::{UNIT_ROUNDOFF, UNSCALED_EXTENT};
@@ -46,7 +47,9 @@ pub(super) fn separation_again(a: Convex, b: Convex, goal: &Goal, cache: &mut Pa
 /// What doubles know.
 #[inline]
 fn in_doubles(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
-    if let Some(found) = segments::separation(a, b, goal) {
+    if goal.solver == Solver::Default
+        && let Some(found) = segments::separation(a, b, goal)
+    {
         return found;
     }
     let b_in_a = Placement::relative(a.at, b.at);

@@ -187,6 +187,18 @@ fn a_solver_that_does_not_take_a_shape_says_which_and_why() {
     }
 }
 
+/// No closed form stands in for a solver that was asked for by name.
+#[test]
+fn a_solver_that_is_named_does_the_work() {
+    let capsule = Shape::capsule(0.2, 0.5).unwrap();
+    let mut random = Random::new(44);
+    for solver in Solver::ALL.into_iter().filter(|solver| *solver != Solver::Default) {
+        let (at_a, at_b) = (random.pose(1.0).placement(), random.pose(1.0).placement());
+        let found = separation(&capsule, &capsule, &at_a, &at_b, &asked(solver, Depth::Distance)).unwrap();
+        assert!(found.cost.supports > 0 && found.termination != Termination::ClosedForm, "{solver}: {found:?}");
+    }
+}
+
 #[test]
 fn names_of_solvers_lead_back_to_them() {
     for solver in Solver::ALL {
