@@ -56,17 +56,23 @@ class Entry:
     def unanswered(self):
         return int(np.sum(~np.isfinite(self.error)))
 
-    def times(self):
-        """Ticks of each pair: the median over the rounds."""
-        return np.median(self.ticks, axis=0)
-
     def median(self):
-        """Over the pairs, nanoseconds."""
-        return grouped_median(self.times(), self.contender.step) / self.contender.ticks_per_nanosecond
+        """Nanoseconds: the median over the rounds of that over the pairs, which resolves what the clock rounds."""
+        rounds = [grouped_median(ticks, self.contender.step) for ticks in self.ticks]
+        return float(np.median(rounds)) / self.contender.ticks_per_nanosecond
 
     def percentile99(self):
-        """Over the pairs, nanoseconds."""
-        return float(percentile99(self.times())) / self.contender.ticks_per_nanosecond
+        """Nanoseconds: over the pairs, each with its median over the rounds, so that an interruption is no tail."""
+        return float(percentile99(np.median(self.ticks, axis=0))) / self.contender.ticks_per_nanosecond
+
+
+def fastest_first(entries):
+    return sorted(entries, key=lambda entry: entry.trial)
+
+
+def fastest_of_each(entries):
+    """The fastest configuration of every contender."""
+    return list({entry.contender.name: entry for entry in reversed(fastest_first(entries))}.values())
 
 
 @dataclass
@@ -79,6 +85,10 @@ class Result:
     ours: Entry | None
     #: (configuration, indices of pairs) whose bracket does not hold the reference.
     missed_brackets: list
+
+    def shown(self):
+        """What the table is about: the best peer, ours, and the fastest configuration of every contender."""
+        return unique([self.peer, self.ours, *fastest_of_each(self.entries)])
 
     def ratio(self):
         """Ratio of the medians over pairs: its median over the rounds, and an interval."""
@@ -104,8 +114,7 @@ def race(row, pair_set, contenders, count, rounds):
         return Result(row, [], disqualified, None, None, missed)
     close = [entry for entry in peers if entry.trial <= SLOW * peers[0].trial]
     # The fastest of every contender is shown, however slow.
-    shown = {entry.contender.name: entry for entry in reversed(fastest_first(field_))}
-    rivals = close + [entry for entry in shown.values() if entry not in close]
+    rivals = close + [entry for entry in fastest_of_each(field_) if entry not in close]
     own = fastest_first([entry for entry in entries if entry.is_ours])
     candidates = [matching(own, peer) for peer in close]
     run_rounds(row, pair_set, rivals + unique(candidates), count, rounds)
@@ -151,10 +160,6 @@ def matching(own, peer):
     loosest_first = sorted(own, key=lambda entry: -float(entry.config.split("/")[0]))
     exact = (entry for entry in loosest_first if no_worse(entry.error99, peer.error99))
     return next(exact, loosest_first[-1])
-
-
-def fastest_first(entries):
-    return sorted(entries, key=lambda entry: entry.trial)
 
 
 def unique(entries):

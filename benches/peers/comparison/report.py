@@ -75,9 +75,9 @@ def preamble(settings):
         f"Coal {version('coal')} (its wheel, any x86-64), parry 0.31.1 (target-cpu=native), ours for any x86-64 with",
         "wider instructions chosen at run time.",
         "",
-        "Cold: each pair once a pass. A pair's time is its median over the rounds; a row shows the median and the",
-        "99th percentile over the pairs. Ratio: ours to the best peer's, median over the rounds of the ratio of",
-        "medians, with the 95 % interval of order statistics; *unclear*: the target is in it. Best peer: the fastest",
+        "Cold: each pair once a pass. Times are the median over the pairs, and the 99th percentile of their medians over",
+        "the rounds. Ratio: ours to the best peer's, median over the rounds of the ratio of medians, with the 95 %",
+        "interval of order statistics; *unclear*: the target is in it. Best peer: the fastest",
         "configuration in f64 (of booleans, one without a wrong answer). Ours runs at the loosest tolerance whose",
         "99th percentile of the error, metres, is no worse than that peer's. Tracks (`warm`): ours from its cache",
         "against ours without.",
@@ -116,12 +116,12 @@ FIELDS = (
 
 
 def write_csv(path, results):
-    """Every entry that was timed, a line each."""
+    """The best peer, ours, and the fastest configuration of every contender, a line each."""
     with path.open("w", newline="") as out:
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow(FIELDS)
         for result in results:
-            for entry in result.entries:
+            for entry in result.shown() if result.ours else []:
                 writer.writerow(csv_line(result, entry))
 
 
