@@ -2,29 +2,40 @@
 //!
 //! Nearly every bracket decides what was asked of it, and pays one comparison here. One that straddles contact or the margin
 //! is worked out again in double-doubles, and where those straddle it too and both cores are polytopes, in exact
-//! arithmetic. What met the cap on iterations is first looked at as bodies of revolution, which are what meets it.
+//! arithmetic. What is far wider than doubles have to leave it is first looked at as bodies of revolution.
 
 use super::convex::Convex;
 use super::goal::{Depth, Goal};
 use super::outcome::{Bracket, Separation, Termination};
 use super::solver::Solver;
+use super::support::radius;
 use super::unbounded::{Height, Unbounded};
 use super::{double_double, exact, revolution};
+use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 
 /// `found`, or something narrower where that leaves the question open.
 #[inline]
 pub(super) fn settle(a: &Convex, b: &Convex, goal: &Goal, found: Separation) -> Separation {
-    if is_open(goal, &found) { escalate(a, b, goal, found) } else { found }
+    if is_open(goal, &found) || is_wide(a, b, goal, &found) { escalate(a, b, goal, found) } else { found }
 }
 
-/// Whether a verdict is missing that more digits could give, or the bracket is wider than doubles have to leave it. When the
-/// cut-off is not positive a contact is known already, and another one would change no verdict. A solver that was chosen
-/// for comparison keeps its own cap.
+/// Whether a verdict is missing that more digits could give.
 fn is_open(goal: &Goal, found: &Separation) -> bool {
-    let capped = found.termination == Termination::IterationLimit && goal.solver == Solver::Default;
-    capped || (is_undecided(goal, &found.bracket) && found.termination != Termination::TimeLimit)
+    is_undecided(goal, &found.bracket) && found.termination != Termination::TimeLimit
 }
 
+/// Whether the bracket is wider than asked, and several times wider than the errors of doubles have to leave it. A solver
+/// that was chosen for comparison keeps its own end.
+fn is_wide(a: &Convex, b: &Convex, goal: &Goal, found: &Separation) -> bool {
+    let gave_up = matches!(found.termination, Termination::IterationLimit | Termination::RoundingFloor);
+    let measured = goal.depth != Depth::Verdict && goal.solver == Solver::Default;
+    gave_up && measured && !goal.accuracy.is_met(&found.bracket) && {
+        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * (radius(a.core) + radius(b.core) + found.bracket.lower.abs());
+        found.bracket.width() > 8.0 * (error + a.placement_error + b.placement_error)
+    }
+}
+
+/// When the cut-off is not positive a contact is known already, and another one would change no verdict.
 fn is_undecided(goal: &Goal, bracket: &Bracket) -> bool {
     !goal.gives_a_verdict(bracket) && bracket.lower <= goal.cut_off && goal.cut_off > 0.0
 }
@@ -32,7 +43,7 @@ fn is_undecided(goal: &Goal, bracket: &Bracket) -> bool {
 #[cold]
 fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separation {
     found.cost.escalations += 1;
-    if found.termination == Termination::IterationLimit {
+    if is_wide(a, b, goal, &found) {
         found = revolution::narrowed(a, b, goal, found);
     }
     if is_undecided(goal, &found.bracket)
@@ -40,7 +51,7 @@ fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separ
     {
         found = merged(found, more);
     }
-    if is_open(goal, &found)
+    if (is_open(goal, &found) || is_wide(a, b, goal, &found))
         && let Some(more) = exact::separation(a, b, found.normal, goal)
     {
         found = merged(found, more);
