@@ -16,7 +16,13 @@ use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 /// `found`, or something narrower where that leaves the question open.
 #[inline]
 pub(super) fn settle(a: &Convex, b: &Convex, goal: &Goal, found: Separation) -> Separation {
-    if is_open(goal, &found) || is_wide(a, b, goal, &found) { escalate(a, b, goal, found) } else { found }
+    if needs_more(a, b, goal, &found) { escalate(a, b, goal, found) } else { found }
+}
+
+/// Whether the question is open, the bracket too wide, or the exact answer asked for by name.
+#[inline]
+fn needs_more(a: &Convex, b: &Convex, goal: &Goal, found: &Separation) -> bool {
+    is_open(goal, found) || is_wide(a, b, goal, found) || goal.solver == Solver::Exact
 }
 
 /// Whether a verdict is missing that more digits could give.
@@ -51,7 +57,7 @@ fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separ
     {
         found = merged(found, more);
     }
-    if (is_open(goal, &found) || is_wide(a, b, goal, &found))
+    if needs_more(a, b, goal, &found)
         && let Some(more) = exact::separation(a, b, found.normal, goal)
     {
         found = merged(found, more);

@@ -19,7 +19,8 @@ use crate::geometry::Core;
 #[inline]
 pub(super) fn solve(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Epa {
     match target.goal.solver {
-        Solver::Default => by_default(difference, target, cost),
+        // The exact solver sets out from what doubles find.
+        Solver::Default | Solver::Exact => by_default(difference, target, cost),
         Solver::Gjk => by_gjk(difference, difference.start(), Plain, target, cost),
         chosen @ (Solver::FrankWolfe
         | Solver::GjkPolyak
@@ -96,7 +97,7 @@ fn by_choice(chosen: Solver, difference: &mut Difference, target: &Target, cost:
         Solver::GjkPolyak | Solver::GjkNesterov | Solver::GjkNesterovNormalised => {
             by_gjk(difference, centers, Momentum::new(chosen, centers), target, cost)
         }
-        Solver::Default | Solver::Gjk => by_gjk(difference, centers, Plain, target, cost),
+        Solver::Default | Solver::Exact | Solver::Gjk => by_gjk(difference, centers, Plain, target, cost),
     }
 }
 

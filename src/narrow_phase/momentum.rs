@@ -70,7 +70,7 @@ impl Momentum {
             Solver::GjkPolyak => Some(Rule::Polyak),
             Solver::GjkNesterov => Some(Rule::Nesterov),
             Solver::GjkNesterovNormalised => Some(Rule::NesterovNormalised),
-            Solver::Default | Solver::FrankWolfe | Solver::Gjk | Solver::Sat | Solver::Qp => None,
+            Solver::Default | Solver::FrankWolfe | Solver::Gjk | Solver::Sat | Solver::Qp | Solver::Exact => None,
         };
         Self { rule, last: first, round: 1 }
     }

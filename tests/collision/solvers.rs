@@ -72,7 +72,8 @@ fn solvers_agree_on_random_pairs_of_every_kind() {
             | Solver::GjkPolyak
             | Solver::GjkNesterov
             | Solver::GjkNesterovNormalised
-            | Solver::Sat => claimed - claimed / 50,
+            | Solver::Sat
+            | Solver::Exact => claimed - claimed / 50,
         };
         assert!(narrow >= least, "{solver}: only {narrow} of {claimed} brackets are as narrow as asked");
     }
@@ -179,7 +180,7 @@ fn axes_of_small_polytopes_agree_with_gjk_and_epa() {
 #[test]
 fn a_solver_that_does_not_take_a_shape_says_which_and_why() {
     let (cone, hull) = (Shape::cone(0.2, 0.3).unwrap(), Shape::point());
-    for solver in [Solver::Sat, Solver::Qp] {
+    for solver in [Solver::Sat, Solver::Qp, Solver::Exact] {
         let refused = separation(&cone, &hull, &at(0.0, 0.0, 0.0), &at(1.0, 0.0, 0.0), &asked(solver, Depth::Distance));
         let Err(NoSeparation::Unclaimed(unclaimed)) = refused else { panic!("{refused:?}") };
         let text = unclaimed.to_string();

@@ -178,6 +178,7 @@ fn every_solver_brackets_the_truth_of_the_cases_it_takes() {
         ("gjk_nesterov_normalised", cases.len()),
         ("sat", 600),
         ("qp", 800),
+        ("exact", 800),
     ] {
         let output = clearance(&["pairs", file.to_str().unwrap(), "--solver", solver]);
         let answers = json_lines(&output.stdout);

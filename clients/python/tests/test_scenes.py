@@ -41,7 +41,7 @@ class Scenes(DaemonTest):
             clearance.add_body("a", clearance.box([1, 1, 1])),
             clearance.add_body("b", clearance.box([1, 2, 1]), clearance.pose([0, 0, 5])),
         )
-        for solver in ("default", "frank_wolfe", "gjk", "gjk_polyak", "gjk_nesterov", "gjk_nesterov_normalised", "sat", "qp"):
+        for solver in ("default", "frank_wolfe", "gjk", "gjk_polyak", "gjk_nesterov", "gjk_nesterov_normalised", "sat", "qp", "exact"):
             (answer,) = self.scene.distance(solver=solver)
             self.assertLessEqual(answer.nearest.bracket.lower, 3.0, solver)
             self.assertLessEqual(3.0, answer.nearest.bracket.upper, solver)

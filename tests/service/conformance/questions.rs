@@ -117,7 +117,7 @@ async fn subjects_are_answered_one_by_one(door: &impl Door) {
     }
 }
 
-const SOLVERS: [v1::Solver; 9] = [
+const SOLVERS: [v1::Solver; 10] = [
     v1::Solver::Unspecified,
     v1::Solver::Default,
     v1::Solver::FrankWolfe,
@@ -127,6 +127,7 @@ const SOLVERS: [v1::Solver; 9] = [
     v1::Solver::GjkNesterovNormalised,
     v1::Solver::Sat,
     v1::Solver::Qp,
+    v1::Solver::Exact,
 ];
 
 async fn every_solver_brackets_the_same_distance(door: &impl Door) {

@@ -160,6 +160,7 @@ fn solver(number: i32) -> Result<Solver, ServiceError> {
         Ok(v1::Solver::GjkNesterovNormalised) => Ok(Solver::GjkNesterovNormalised),
         Ok(v1::Solver::Sat) => Ok(Solver::Sat),
         Ok(v1::Solver::Qp) => Ok(Solver::Qp),
+        Ok(v1::Solver::Exact) => Ok(Solver::Exact),
         Err(_) => Err(unknown_value(&Path::root("context").field("solver"), number)),
     }
 }

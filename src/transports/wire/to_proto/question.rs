@@ -67,6 +67,7 @@ fn solver(solver: Solver) -> v1::Solver {
         Solver::GjkNesterovNormalised => v1::Solver::GjkNesterovNormalised,
         Solver::Sat => v1::Solver::Sat,
         Solver::Qp => v1::Solver::Qp,
+        Solver::Exact => v1::Solver::Exact,
     }
 }
 

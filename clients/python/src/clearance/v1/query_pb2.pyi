@@ -20,6 +20,7 @@ class Solver(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     SOLVER_GJK_NESTEROV_NORMALISED: _ClassVar[Solver]
     SOLVER_SAT: _ClassVar[Solver]
     SOLVER_QP: _ClassVar[Solver]
+    SOLVER_EXACT: _ClassVar[Solver]
 
 class AnswerForm(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -69,6 +70,7 @@ SOLVER_GJK_NESTEROV: Solver
 SOLVER_GJK_NESTEROV_NORMALISED: Solver
 SOLVER_SAT: Solver
 SOLVER_QP: Solver
+SOLVER_EXACT: Solver
 ANSWER_FORM_UNSPECIFIED: AnswerForm
 ANSWER_FORM_ITEMS: AnswerForm
 ANSWER_FORM_BULK: AnswerForm
