@@ -6,7 +6,7 @@ pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Error of one support value or one Minkowski vertex, in units of [`UNIT_ROUNDOFF`] times the extent
 /// S = r_A + r_B + |t|. `docs/derivations/bracket.md` adds up the pose (matrix from quaternion, product of two matrices,
-/// rotated difference of positions), the support point and the dot product, and arrives at 111. Smaller could let a
+/// rotated difference of positions), the support point and the dot product, and arrives at it. Smaller could let a
 /// bracket miss the truth; larger only widens it.
 pub const SUPPORT_ERROR_ULPS: f64 = 112.0;
 
