@@ -4,7 +4,7 @@
 //! SSE2. Which of them the processor has is found out at run time by the `pulp` crate; the same expression is evaluated for every point whatever the registers are, so the answer is the same
 //! bytes everywhere.
 
-use pulp::Arch;
+use pulp::{Arch, NullaryFnOnce};
 
 use super::Vec3;
 
@@ -34,8 +34,23 @@ impl Scan {
         if self.blocks.len() * LANES < DISPATCHED {
             farthest(&self.blocks, direction)
         } else {
-            self.arch.dispatch(|| farthest(&self.blocks, direction))
+            self.arch.dispatch(Task { blocks: &self.blocks, direction })
         }
+    }
+}
+
+/// The work as a value: a closure would be compiled on its own, for the narrowest registers.
+struct Task<'a> {
+    blocks: &'a [[[f64; LANES]; 3]],
+    direction: Vec3,
+}
+
+impl NullaryFnOnce for Task<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self) -> usize {
+        farthest(self.blocks, self.direction)
     }
 }
 
@@ -89,7 +104,7 @@ mod tests {
             let plain = farthest(&scan.blocks, d);
             let value = |i: usize| points[i].x * d.x + points[i].y * d.y + points[i].z * d.z;
             assert_eq!((0..45).find(|&i| (0..45).all(|j| value(j) <= value(i))), Some(plain));
-            for dispatched in [scan.farthest(d), scan.arch.dispatch(|| farthest(&scan.blocks, d))] {
+            for dispatched in [scan.farthest(d), scan.arch.dispatch(Task { blocks: &scan.blocks, direction: d })] {
                 assert_eq!(dispatched, plain);
             }
         }

@@ -4,7 +4,7 @@
 //! comes close to a circle everywhere. But their difference is known: with axes along z, B shifted by t, and a direction n
 //! at angle theta from the axis,
 //!
-//!     max over C of n . c = h_A(theta) + h_B(pi - theta) - t . n,
+//!   `max over C of n . c = h_A(theta) + h_B(pi - theta) - t . n`,
 //!
 //! and for given theta the least of that over all meridians is h_A + h_B - |t_xy| sin(theta) - t_z cos(theta). What is left is the
 //! least value over theta, found between the points of a polygon in the half-plane that grows where it is nearest. Axes that are
@@ -51,7 +51,8 @@ pub(super) fn narrowed(a: &Convex, b: &Convex, goal: &Goal, found: Separation) -
     let depth_at_least = least - 1.001 * tilt * radius_a.min(radius_b) - 2.0 * error;
 
     let outward = if across == Vec3::zeros() { perpendicular(up) } else { across / length(across) };
-    let normal = outward * sin + up * cos;
+    // Where the axes nearly meet, `across` is what rounding left over, and need not be perpendicular to the axis.
+    let normal = (outward * sin + up * cos).normalize();
     let on_a = support(a.core, normal);
     let on_b = b_in_a.point(support(b.core, b_in_a.direction_into(-normal)));
     let depth = normal.dot(&(on_a - on_b));

@@ -1,6 +1,6 @@
 //! Numbers at the ends of `f64`, and hulls that are all edge: each was once a wrong verdict or a panic.
 
-use clearance::geometry::{Shape, Vec3};
+use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::narrow_phase::{Accuracy, Goal, separation};
 
 use crate::samples::{Random, at};
@@ -63,5 +63,21 @@ fn a_loose_tolerance_does_not_make_a_decidable_pair_indeterminate() {
         let found = separation(&ball, &hull, &at(0.0, 0.0, 0.0), &at(distance, 0.1, 0.0), &goal).unwrap();
         let bracket = found.bracket;
         assert!(bracket.lower > 0.0 && (bracket.lower > margin || bracket.upper <= margin), "{found:?}");
+    }
+}
+
+/// The axes are apart by no more than rounding: what is left of the distance between them is not perpendicular to them.
+#[test]
+fn a_ball_almost_on_the_axis_of_a_cone_has_a_unit_normal() {
+    let ball = Shape::sphere(4518.334114157639).unwrap();
+    let cone = Shape::cone(19049.27638583989, 8906.391497796696).unwrap();
+    let place =
+        |t: [f64; 3], [w, x, y, z]: [f64; 4]| Pose::new(Vec3::from(t), Quaternion { w, x, y, z }).unwrap().placement();
+    let at_ball = place([130.87355139177268, -324.14836272689115, 875.1111736546347], [1.0; 4]);
+    let turn = [1.000003386386333, 0.9999983177973364, 1.000000622873853, 1.0000029533088168];
+    let at_cone = place([-4011.273520804187, -324.14836272689115, 875.1111736546347], turn);
+    for (one, other, at_one, at_other) in [(&ball, &cone, &at_ball, &at_cone), (&cone, &ball, &at_cone, &at_ball)] {
+        let found = separation(one, other, at_one, at_other, &Goal::penetration()).unwrap();
+        assert!((found.normal.norm() - 1.0).abs() < 1e-14, "{found:?}");
     }
 }
