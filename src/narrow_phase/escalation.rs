@@ -74,10 +74,7 @@ fn merged(found: Separation, more: Separation) -> Separation {
         return Separation { bracket, cost, ..more };
     }
     let bracket = found.bracket.intersection(&more.bracket);
-    let signed_distance = found.signed_distance.clamp(bracket.lower, bracket.upper);
-    let point_on_b = found.point_on_a + found.normal * signed_distance;
-    let point_error = found.point_error + (signed_distance - found.signed_distance).abs();
-    Separation { bracket, signed_distance, point_on_b, point_error, cost, termination: more.termination, ..found }
+    Separation { cost, termination: more.termination, ..found.within(bracket) }
 }
 
 /// The same for a body and a wall, where a few more digits cost little: `found` is kept only if it is all that was asked for.

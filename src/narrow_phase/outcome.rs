@@ -104,3 +104,14 @@ pub struct Separation {
     /// What it cost.
     pub cost: Cost,
 }
+
+impl Separation {
+    /// The same with a bracket that is known to be narrower; the estimate goes along.
+    #[must_use]
+    pub(super) fn within(self, bracket: Bracket) -> Self {
+        let signed_distance = self.signed_distance.clamp(bracket.lower, bracket.upper);
+        let point_on_b = self.point_on_a + self.normal * signed_distance;
+        let point_error = self.point_error + (signed_distance - self.signed_distance).abs();
+        Self { bracket, signed_distance, point_on_b, point_error, ..self }
+    }
+}

@@ -69,7 +69,7 @@ pub(super) fn narrowed(a: &Convex, b: &Convex, goal: &Goal, found: Separation) -
         found.termination
     };
     if known.lower < found.bracket.lower {
-        return Separation { bracket, termination, ..found };
+        return Separation { termination, ..found.within(bracket) };
     }
     let signed_distance = (-depth - radii).clamp(bracket.lower, bracket.upper);
     let normal = a.at.direction(normal);

@@ -81,3 +81,18 @@ fn a_ball_almost_on_the_axis_of_a_cone_has_a_unit_normal() {
         assert!((found.normal.norm() - 1.0).abs() < 1e-14, "{found:?}");
     }
 }
+
+/// The meridian narrows the bracket from one side only, and the estimate of doubles is on the other.
+#[test]
+fn a_tiny_cone_deep_in_a_capsule_on_its_axis_has_its_estimate_in_the_bracket() {
+    let capsule = Shape::capsule(479866.5287507827, 226337.10736123673).unwrap();
+    let cone = Shape::cone(1.0316182803952063e-6, 5.907906739818707e-7).unwrap();
+    let t = Vec3::new(14868064.484302688, -38111873.266648896, -1781937.5164195693);
+    let [w, x, y, z] = [1.0000000000011708, 4.822033347885226e-13, 2.8356171663444786e-13, 4.375509644353268e-13];
+    let at_capsule = Pose::new(t, Quaternion { w, x, y, z }).unwrap().placement();
+    let at_cone = Pose::new(t, Quaternion::IDENTITY).unwrap().placement();
+    let goal = Goal { accuracy: Accuracy { absolute: 0.0, relative: 0.0 }, ..Goal::penetration() };
+    let found = separation(&capsule, &cone, &at_capsule, &at_cone, &goal).unwrap();
+    let bracket = found.bracket;
+    assert!(bracket.lower <= found.signed_distance && found.signed_distance <= bracket.upper, "{found:?}");
+}
