@@ -71,7 +71,7 @@ fn merged(found: Separation, more: Separation) -> Separation {
     cost.supports += more.cost.supports;
     if more.bracket.width() <= found.bracket.width() {
         let bracket = more.bracket.intersection(&found.bracket);
-        return Separation { bracket, cost, ..more };
+        return Separation { cost, ..more.within(bracket) };
     }
     let bracket = found.bracket.intersection(&more.bracket);
     Separation { cost, termination: more.termination, ..found.within(bracket) }

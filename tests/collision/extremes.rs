@@ -96,3 +96,19 @@ fn a_tiny_cone_deep_in_a_capsule_on_its_axis_has_its_estimate_in_the_bracket() {
     let bracket = found.bracket;
     assert!(bracket.lower <= found.signed_distance && found.signed_distance <= bracket.upper, "{found:?}");
 }
+
+/// A point on the face of a box, which exact arithmetic tells: its estimate is no farther out than the bracket of doubles.
+#[test]
+fn a_point_on_the_face_of_a_box_far_out_has_its_estimate_in_the_bracket() {
+    let cuboid = Shape::cuboid(Vec3::new(3584.0, 3584.0, 4608.0)).unwrap();
+    let at_point = at(3004451.4851513575, 83507998.80698475, -8866682.281142829);
+    let t = Vec3::new(3004451.4851513575, 83511582.80698475, -8866682.281142829);
+    let (w, x) = (2.7106885795442714, -1.0375494256096017e-16);
+    let (y, z) = (1.178819236222159e-16, -4.177860848950298e-17);
+    let at_box = Pose::new(t, Quaternion { w, x, y, z }).unwrap().placement();
+    let goal = Goal { margin: 1177.6000000000001, cut_off: 5888.0, ..Goal::verdict() };
+    let found = separation(&Shape::point(), &cuboid, &at_point, &at_box, &goal).unwrap();
+    let bracket = found.bracket;
+    assert!(bracket.lower <= found.signed_distance && found.signed_distance <= bracket.upper, "{found:?}");
+    assert!(bracket.upper <= 0.0, "they touch: {found:?}");
+}
