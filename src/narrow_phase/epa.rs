@@ -153,8 +153,28 @@ fn expand(
     }
     if let Some(corners) = deepest {
         best.nearest = nearest_of_triangle(corners, difference.extent);
+        let height = best.direction.dot(&best.nearest.w);
+        if (best.nearest.w - best.direction * height).norm() > 8.0 * error {
+            best.nearest = nearest_in_plane(polytope, &best, difference);
+        }
     }
     best
+}
+
+/// The nearest point on the faces that lie in one plane with the face of the best direction: the first of them that came up
+/// need not be the one that the origin is above.
+#[cold]
+fn nearest_in_plane(polytope: &Polytope, best: &Epa, difference: &Difference) -> Vertex {
+    let height = best.direction.dot(&best.nearest.w);
+    let is_level = |v: &Vertex| (best.direction.dot(&v.w) - height).abs() <= 8.0 * difference.error;
+    let mut nearest = best.nearest;
+    for corners in polytope.triangles().filter(|corners| corners.iter().all(is_level)) {
+        let point = nearest_of_triangle(corners, difference.extent);
+        if point.w.norm_squared() < nearest.w.norm_squared() {
+            nearest = point;
+        }
+    }
+    nearest
 }
 
 /// Takes note of `value`, the least of `direction . c` over C, and says whether it is the best so far.

@@ -30,9 +30,9 @@ pub(super) struct Difference<'a> {
     pub b_in_a: Placement,
     /// No vertex is farther than this from the origin, metres.
     pub extent: f64,
-    /// E = 112 u S plus what the placement of the cores is off by, where no vertex is farther than S from the origin: a vertex is within this distance of a point of the true difference, and the least value of `d . c` over the
-    /// true difference is within this of the value at the vertex found, for a unit d. Metres. Derived in
-    /// `docs/derivations/bracket.md`.
+    /// E = 112 u S, S the extent, plus what the placement of the cores is off by: a vertex is within this distance of a
+    /// point of the true difference, and the least value of `d . c` over the true difference is within this of the value
+    /// at the vertex found, for a unit d. Metres. Derived in `docs/derivations/bracket.md`.
     pub error: f64,
     /// The corners found last, and the direction, where a search along edges may start.
     hints: [u32; 2],
@@ -75,11 +75,6 @@ impl<'a> Difference<'a> {
     #[inline]
     pub fn start(&self) -> Vec3 {
         if is_same(self.memory.direction, Vec3::zeros()) { self.centers() } else { self.memory.direction }
-    }
-
-    /// The cores, and the place of the second in the frame of the first.
-    pub fn parts(&self) -> (&'a Core, &'a Core, Placement) {
-        (self.a, self.b, self.b_in_a)
     }
 
     /// A first guess of the direction from the origin to the difference: between the centres of the bounds.

@@ -2,9 +2,12 @@
 //!
 //! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the trees of
 //! meshes (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
-//! closed mesh, `convex` runs the solvers on a pair of cores, `unbounded` has the formula for half-spaces and planes. Below
-//! lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a second door, for all
-//! touching triangles.
+//! closed mesh, `convex` takes a pair of cores, `unbounded` has the formula for half-spaces and planes.
+//!
+//! For a pair of cores `ladder` chooses the solver: a closed form (`segments`), `gjk` with or without `momentum` and then `epa`,
+//! separating axes (`sat`), Newton's method (`smooth`), or one for comparison (`frank_wolfe`, `qp`). What doubles leave open
+//! `escalation` hands to `revolution`, `double_double` and `exact`. Below lie the Minkowski difference, its simplices and polytope,
+//! and the support functions. [`touching_pairs`] is a second door, for all touching triangles.
 
 mod box_gaps;
 mod bracketing;

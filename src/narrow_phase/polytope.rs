@@ -137,6 +137,11 @@ impl Polytope {
         [self.vertices[usize::from(a)], self.vertices[usize::from(b)], self.vertices[usize::from(c)]]
     }
 
+    /// The corners of every live face.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vertex; 3]> {
+        (0..self.faces.len()).filter(|&face| self.faces[face].alive).map(|face| self.corners(face))
+    }
+
     /// Whether the vertex is strictly outside the plane of the face. Exact.
     pub fn is_outside(&self, face: usize, vertex: &Vertex) -> bool {
         self.side(&self.faces[face], vertex.w) < 0.0

@@ -29,7 +29,7 @@ pub(super) struct Smooth<'a> {
 impl<'a> Smooth<'a> {
     /// None for other kinds, and for ellipsoids so flat that a step would be a guess.
     pub fn of(difference: &Difference<'a>) -> Option<Self> {
-        let (a, b, b_in_a) = difference.parts();
+        let &Difference { a, b, b_in_a, .. } = difference;
         (is_smooth(a) && is_smooth(b)).then_some(Self { a, b, b_in_a })
     }
 

@@ -191,7 +191,7 @@ pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
     }
 }
 
-/// Middle of the core's bounds.
+/// A point well inside of the core: where a search aims at first.
 pub(super) fn center(core: &Core) -> Vec3 {
     match core {
         Core::Convex(hull) => hull.bounds().center(),

@@ -1,7 +1,7 @@
 //! Numbers at the ends of `f64`, and hulls that are all edge: each was once a wrong verdict or a panic.
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
-use clearance::narrow_phase::{Accuracy, Goal, separation};
+use clearance::narrow_phase::{Accuracy, Goal, Solver, separation};
 
 use crate::samples::{Random, at};
 
@@ -111,4 +111,24 @@ fn a_point_on_the_face_of_a_box_far_out_has_its_estimate_in_the_bracket() {
     let bracket = found.bracket;
     assert!(bracket.lower <= found.signed_distance && found.signed_distance <= bracket.upper, "{found:?}");
     assert!(bracket.upper <= 0.0, "they touch: {found:?}");
+}
+
+/// Boxes that lie square in one another: the face of their difference nearest the origin is many triangles in one plane. The
+/// oracle is the error that the answer states: two points apart by no more than the depth are points of both boxes.
+#[test]
+fn witnesses_of_boxes_that_lie_square_are_on_the_boxes() {
+    let mut random = Random::new(41);
+    let mut overlaps = 0;
+    for _ in 0..200 {
+        let half = |random: &mut Random| Vec3::from_fn(|_, _| random.between(0.2, 1.0));
+        let (a, b) = (Shape::cuboid(half(&mut random)).unwrap(), Shape::cuboid(half(&mut random)).unwrap());
+        let t = random.vector(0.8);
+        let goal = Goal { solver: Solver::Gjk, ..Goal::penetration() };
+        let found = separation(&a, &b, &at(0.0, 0.0, 0.0), &at(t.x, t.y, t.z), &goal).unwrap();
+        if found.bracket.upper < 0.0 {
+            overlaps += 1;
+            assert!(found.point_error < 1e-12, "{t:?}: {found:?}");
+        }
+    }
+    assert!(overlaps > 50, "{overlaps} overlaps");
 }
