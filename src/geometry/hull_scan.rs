@@ -30,11 +30,15 @@ impl Scan {
     }
 
     /// Index of the point where `direction . x` is greatest; among equals the first.
+    #[inline]
     pub fn farthest(&self, direction: Vec3) -> usize {
-        if self.blocks.len() * LANES < DISPATCHED {
-            farthest(&self.blocks, direction)
-        } else {
-            self.arch.dispatch(Task { blocks: &self.blocks, direction })
+        match self.blocks.as_slice() {
+            [block] => {
+                let values = products(block, direction);
+                first_equal(&values, greatest(&values)).unwrap_or(0)
+            }
+            blocks if blocks.len() * LANES < DISPATCHED => farthest(blocks, direction),
+            blocks => self.arch.dispatch(Task { blocks, direction }),
         }
     }
 }
@@ -63,22 +67,17 @@ fn arch() -> Arch {
 /// same expression again.
 #[inline(always)]
 fn farthest(blocks: &[[[f64; LANES]; 3]], direction: Vec3) -> usize {
-    let mut greatest = [f64::NEG_INFINITY; LANES];
+    let mut of_lanes = [f64::NEG_INFINITY; LANES];
     for block in blocks {
         let values = products(block, direction);
         for lane in 0..LANES {
-            greatest[lane] = if values[lane] > greatest[lane] { values[lane] } else { greatest[lane] };
+            of_lanes[lane] = greater(of_lanes[lane], values[lane]);
         }
     }
-    let greatest = greatest.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let greatest = greatest(&of_lanes);
     for (b, block) in blocks.iter().enumerate() {
-        let values = products(block, direction);
-        let mut equals = 0u32;
-        for lane in 0..LANES {
-            equals |= u32::from(values[lane] == greatest) << lane;
-        }
-        if equals != 0 {
-            return b * LANES + equals.trailing_zeros() as usize;
+        if let Some(lane) = first_equal(&products(block, direction), greatest) {
+            return b * LANES + lane;
         }
     }
     0 // The direction has a component that is not a number.
@@ -86,7 +85,36 @@ fn farthest(blocks: &[[[f64; LANES]; 3]], direction: Vec3) -> usize {
 
 #[inline(always)]
 fn products(block: &[[f64; LANES]; 3], d: Vec3) -> [f64; LANES] {
-    std::array::from_fn(|lane| block[0][lane] * d.x + block[1][lane] * d.y + block[2][lane] * d.z)
+    let mut products = [0.0; LANES];
+    for lane in 0..LANES {
+        products[lane] = block[0][lane] * d.x + block[1][lane] * d.y + block[2][lane] * d.z;
+    }
+    products
+}
+
+/// In pairs, which registers of any width can do together.
+#[inline(always)]
+fn greatest(v: &[f64; LANES]) -> f64 {
+    let mut half = [0.0; LANES / 2];
+    for lane in 0..LANES / 2 {
+        half[lane] = greater(v[lane], v[lane + LANES / 2]);
+    }
+    greater(greater(half[0], half[2]), greater(half[1], half[3]))
+}
+
+/// One instruction, other than `f64::max`, which has an opinion about what is not a number.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+#[inline(always)]
+fn first_equal(values: &[f64; LANES], value: f64) -> Option<usize> {
+    let mut equals = 0u32;
+    for lane in 0..LANES {
+        equals |= u32::from(values[lane] == value) << lane;
+    }
+    (equals != 0).then(|| equals.trailing_zeros() as usize)
 }
 
 #[cfg(test)]

@@ -14,9 +14,33 @@ pub(super) struct Target<'a> {
     pub scale: f64,
     /// 1 / scale, exactly.
     pub unscale: f64,
+    /// No bound of the (scaled) cores says anything final unless `lower` is above `far`, `upper` not above `near`, or their
+    /// difference at most `wide + relative * |upper|`: three comparisons that spare most rounds the rest.
+    far: f64,
+    near: f64,
+    wide: f64,
 }
 
-impl Target<'_> {
+impl<'a> Target<'a> {
+    /// `radii`: the sum of the swept radii, metres. `scale`: a power of two.
+    #[inline]
+    pub fn new(goal: &'a Goal<'a>, radii: f64, scale: f64) -> Self {
+        let far = match goal.depth {
+            Depth::Verdict => goal.cut_off.min(0.0),
+            Depth::Distance | Depth::Penetration => goal.cut_off,
+        };
+        let near = if goal.depth == Depth::Penetration { f64::NEG_INFINITY } else { radii * scale };
+        let wide = (goal.accuracy.absolute + goal.accuracy.relative * radii) * scale;
+        Self { goal, radii, scale, unscale: 1.0 / scale, far: (far + radii) * scale, near, wide }
+    }
+
+    /// Whether these bounds of the (scaled) cores may be enough; where not, they are not. Rounding outwards makes the bracket of
+    /// the shapes wider than the difference of the bounds by more than these sums round.
+    #[inline]
+    pub fn may_be_enough(&self, lower: f64, upper: f64) -> bool {
+        lower > self.far || upper <= self.near || upper - lower <= self.wide + self.goal.accuracy.relative * upper.abs()
+    }
+
     /// Bracket of the shapes, metres, from bounds on the (scaled) cores. Rounded outwards: the sum of the radii, the
     /// difference and the product round once each; four units in the last place cover them.
     #[inline]

@@ -11,7 +11,6 @@ use super::minkowski::Difference;
 use super::momentum::Steering;
 use super::outcome::{Cost, Separation, Termination};
 use super::pair_cache::PairCache;
-use super::polytope::inner_ball;
 use super::segments;
 use super::solver::Solver;
 use super::support::radius;
@@ -60,8 +59,8 @@ fn in_doubles(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Sep
     }
     // Below the normal numbers roundings are absolute.
     let denormal = 64.0 * f64::MIN_POSITIVE;
-    let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal);
-    solved(a, b, goal, difference, 1.0, cache)
+    let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal, cache);
+    solved(a, b, goal, difference, 1.0)
 }
 
 /// Pairs of extreme size are brought near 1 by a power of two, which rounds nothing.
@@ -82,24 +81,15 @@ fn scaled_separation(
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
     let extent = radius(&core_a) + radius(&core_b) + length(b_in_a.translation);
-    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error), scale, cache)
+    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error, cache), scale)
 }
 
 /// What the goal's solver finds out about the difference, as an answer about the shapes.
 #[inline]
-fn solved(
-    a: &Convex,
-    b: &Convex,
-    goal: &Goal,
-    mut difference: Difference,
-    scale: f64,
-    cache: &mut PairCache,
-) -> Separation {
-    let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale, unscale: 1.0 / scale };
+fn solved(a: &Convex, b: &Convex, goal: &Goal, mut difference: Difference, scale: f64) -> Separation {
+    let target = Target::new(goal, a.swept_radius + b.swept_radius, scale);
     let mut cost = Cost { pairs: 1, ..Cost::default() };
-    difference.memory = *cache;
     let found = ladder::solve(&mut difference, &target, &mut cost);
-    *cache = difference.memory;
     place(&found, a, &target, &difference, cost)
 }
 
@@ -121,19 +111,18 @@ pub(super) fn by_gjk(
         End::Converged => stopped(Termination::Converged),
         End::Decided => stopped(Termination::Decided),
         End::Stalled if at_floor => stopped(Termination::RoundingFloor),
-        End::Stalled => epa(difference, found.simplex.vertices(), stopped(Termination::IterationLimit), target, cost),
+        End::Stalled => epa(difference, &found.simplex.vertices(), stopped(Termination::IterationLimit), target, cost),
         End::Limit => stopped(Termination::IterationLimit),
         End::OutOfTime => stopped(Termination::TimeLimit),
         End::Enclosed => {
-            let vertices = found.simplex.enclosing();
             // The ball around the origin that no face of the tetrahedron cuts.
-            let upper = difference.error - inner_ball(vertices);
+            let upper = difference.error - found.simplex.inner_ball(difference.extent + difference.error).max(0.0);
             let overlap = Epa { upper, ..stopped(Termination::Decided) };
             let measured = target.goal.depth == Depth::Penetration;
             if !measured && target.is_decided(&target.bracket(overlap.lower, overlap.upper)) {
                 return overlap;
             }
-            epa(difference, &vertices, overlap, target, cost)
+            epa(difference, &found.simplex.enclosing(), overlap, target, cost)
         }
     }
 }

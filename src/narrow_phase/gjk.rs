@@ -22,7 +22,6 @@ use super::pair_cache::rebuilt;
 use super::simplex::{Simplex, Step};
 use super::support::unit;
 use crate::geometry::Vec3;
-use crate::geometry::vector::is_same;
 
 /// Rounds at most. Smooth pairs need some 50 for a relative width of 1e-9; the most seen in the test corpus is below
 /// 100, on cones and ellipsoids of extreme proportions.
@@ -70,9 +69,7 @@ pub(super) fn gjk(
     cost: &mut Cost,
 ) -> Gjk {
     let found = search(difference, start, &mut steering, target, cost);
-    let vertices =
-        if matches!(found.end, End::Enclosed) { &found.simplex.enclosing() } else { found.simplex.vertices() };
-    difference.memory.note(vertices, found.direction);
+    difference.memory.note(&found.simplex, matches!(found.end, End::Enclosed), found.direction);
     found
 }
 
@@ -85,7 +82,7 @@ fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut C
     let is_axis_enough = target.goal.depth == Depth::Verdict && difference.memory.len < 4;
     if difference.memory.len > 0
         && !is_axis_enough
-        && let Some((simplex, encloses)) = rebuilt(&difference.remembered(), difference.extent)
+        && let Some((simplex, encloses)) = rebuilt(&difference.remembered(), difference.extent + error)
     {
         let upper = simplex.x.norm() + error;
         let end = if encloses { End::Enclosed } else { End::Limit };
@@ -141,8 +138,8 @@ fn search(
             best.end = end;
             break;
         }
-        let is_old = best.simplex.vertices().iter().any(|v| is_same(v.w, vertex.w));
-        let step = if is_old { Step::NoNearer } else { best.simplex.add(vertex, difference.extent) };
+        let is_old = best.simplex.has(vertex.w);
+        let step = if is_old { Step::NoNearer } else { best.simplex.add(&vertex, difference.extent + error) };
         match step {
             Step::Reduced => best.upper = best.simplex.x.norm() + error,
             // What a steered direction found was not what lies farthest against x: that is no reason to end.
@@ -162,6 +159,9 @@ fn search(
 
 #[inline]
 fn settled(best: &Gjk, target: &Target) -> Option<End> {
+    if !target.may_be_enough(best.lower, best.upper) {
+        return None;
+    }
     let bracket = target.bracket(best.lower, best.upper);
     if target.is_decided(&bracket) {
         return Some(End::Decided);

@@ -41,7 +41,7 @@ impl Course<'_> {
 
     /// What the features of two triangles say; none when that is too little.
     fn by_features(&self, pair: &TrianglePair, goal: &Goal, farther: impl Fn(f64) -> Option<Leaves>) -> Option<Leaves> {
-        let target = Target { goal, radii: self.radii, scale: 1.0, unscale: 1.0 };
+        let target = Target::new(goal, self.radii, 1.0);
         let faces = pair.gap_along_faces();
         if let Some(out) = farther(faces.gap) {
             return Some(out);

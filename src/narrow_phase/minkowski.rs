@@ -38,20 +38,27 @@ pub(super) struct Difference<'a> {
     hints: [u32; 2],
     last: Vec3,
     /// Where the last query of the pair ended, and then where this one did.
-    pub memory: PairCache,
+    pub memory: &'a mut PairCache,
 }
 
 impl<'a> Difference<'a> {
     /// `extent`: S, no less than the sum of both cores' radii and the distance of their origins, metres.
     /// `placement_error`: how far a point of B may be from its stored place in A's frame by roundings before, metres.
     #[inline]
-    pub fn new(a: &'a Core, b: &'a Core, b_in_a: Placement, extent: f64, placement_error: f64) -> Self {
+    pub fn new(
+        a: &'a Core,
+        b: &'a Core,
+        b_in_a: Placement,
+        extent: f64,
+        placement_error: f64,
+        memory: &'a mut PairCache,
+    ) -> Self {
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
-        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros(), memory: PairCache::new() }
+        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros(), memory }
     }
 
     /// The vertex where `direction . c` is least, for a unit direction.
-    #[inline]
+    #[inline(never)]
     pub fn lowest(&mut self, direction: Vec3) -> Vertex {
         // Far from the last direction a fresh start is nearer than the last corner.
         let is_near = direction.dot(&self.last) > 0.9;

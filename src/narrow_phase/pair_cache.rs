@@ -27,11 +27,9 @@ impl PairCache {
 
     /// Notes where a search ended.
     #[inline]
-    pub(super) fn note(&mut self, vertices: &[Vertex], direction: Vec3) {
-        for (corners, vertex) in self.corners.iter_mut().zip(vertices) {
-            *corners = vertex.corners;
-        }
-        (self.len, self.direction) = (vertices.len(), direction);
+    pub(super) fn note(&mut self, simplex: &Simplex, encloses: bool, direction: Vec3) {
+        self.corners = simplex.corners();
+        (self.len, self.direction) = (if encloses { 4 } else { simplex.len() }, direction);
     }
 }
 
@@ -46,7 +44,7 @@ pub(super) fn rebuilt(vertices: &[Vertex], extent: f64) -> Option<(Simplex, bool
     let (first, rest) = vertices.split_first()?;
     let mut simplex = Simplex::point(*first);
     for vertex in rest {
-        if simplex.add(*vertex, extent) == Step::Enclosed {
+        if simplex.add(vertex, extent) == Step::Enclosed {
             return Some((simplex, true));
         }
     }

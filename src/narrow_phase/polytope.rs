@@ -268,18 +268,6 @@ fn plane(product: Vec3, a: Vec3, b: Vec3, c: Vec3, slack: f64) -> (Vec3, f64) {
     (normal, normal.dot(&a).min(normal.dot(&b)).min(normal.dot(&c)) - slack)
 }
 
-/// Radius of a ball around the origin that is in the tetrahedron, which strictly encloses the origin: proved, metres.
-pub(super) fn inner_ball([a, b, c, d]: [Vertex; 4]) -> f64 {
-    let flip = if orientation(a.w, b.w, c.w, d.w) > 0.0 { 1.0 } else { -1.0 };
-    let size = sum_of_sizes(a.w).max(sum_of_sizes(b.w)).max(sum_of_sizes(c.w)).max(sum_of_sizes(d.w));
-    let mut least = f64::INFINITY;
-    for (p, q, r) in [(a, b, c), (a, d, b), (a, c, d), (b, d, c)] {
-        let product = (q.w - p.w).cross(&(r.w - p.w)) * flip;
-        least = least.min(plane(product, p.w, q.w, r.w, 8.0 * UNIT_ROUNDOFF * size).1);
-    }
-    least.max(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

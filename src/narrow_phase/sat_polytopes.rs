@@ -111,7 +111,7 @@ impl<'a> Axes<'a> {
             if x.norm() <= slack {
                 break;
             }
-            if simplex.add(support(-x), self.extent) != Step::Reduced {
+            if simplex.add(&support(-x), self.extent) != Step::Reduced {
                 break;
             }
         }

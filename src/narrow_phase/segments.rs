@@ -60,7 +60,7 @@ pub(super) fn separation(a: &Convex, b: &Convex, goal: &Goal) -> Option<Separati
     // Least of n . (b - a): each segment sticks out by |n . h|.
     let least = normal.dot(&between) - normal.dot(&one.half).abs() - normal.dot(&other.half).abs();
     let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
-    let target = Target { goal, radii: a.swept_radius + b.swept_radius, scale: 1.0, unscale: 1.0 };
+    let target = Target::new(goal, a.swept_radius + b.swept_radius, 1.0);
     let (lower, upper) = (least - error, distance + error);
     let bracket = target.bracket(lower, upper);
     let at_floor = distance - least <= 2.0 * error;

@@ -7,20 +7,31 @@
 //!
 //! Sub-areas and lengths decide by their signs, as in the signed volumes of Montanari, Petrinic and Barbieri, ACM ToG 2017.
 
+use arrayvec::ArrayVec;
+
 use super::minkowski::Vertex;
 use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::vector::{opposite, sum_of_sizes};
+use crate::geometry::vector::{is_same, opposite, sum_of_sizes};
 
 /// One to three vertices, and the point they hold that is nearest the origin.
 #[derive(Clone, Debug)]
 pub(super) struct Simplex {
-    vertices: [Vertex; 4],
+    /// Points of the difference, apart from where they come from: the step looks at nothing else.
+    w: [Vec3; 4],
+    from: [Origin; 4],
     /// They mix the nearest point: positive, sum 1.
     weights: [f64; 3],
     len: usize,
     /// The nearest point; metres.
     pub x: Vec3,
+}
+
+/// Where a vertex comes from: see [`Vertex`].
+#[derive(Clone, Copy, Debug)]
+struct Origin {
+    on_a: Vec3,
+    corners: [u32; 2],
 }
 
 /// What became of a simplex when a vertex was added.
@@ -44,28 +55,52 @@ struct Place {
 }
 
 impl Simplex {
+    #[inline]
     pub fn point(v: Vertex) -> Self {
-        Self { vertices: [v; 4], weights: [1.0, 0.0, 0.0], len: 1, x: v.w }
+        let from = Origin { on_a: v.on_a, corners: v.corners };
+        Self { w: [v.w; 4], from: [from; 4], weights: [1.0, 0.0, 0.0], len: 1, x: v.w }
     }
 
     /// The vertices of the feature that holds the nearest point.
-    pub fn vertices(&self) -> &[Vertex] {
-        &self.vertices[..self.len]
+    pub fn vertices(&self) -> ArrayVec<Vertex, 4> {
+        (0..self.len).map(|slot| self.vertex(slot)).collect()
     }
 
     /// All four, once they enclose the origin.
     pub fn enclosing(&self) -> [Vertex; 4] {
-        self.vertices
+        [0, 1, 2, 3].map(|slot| self.vertex(slot))
+    }
+
+    /// How many vertices the feature has.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The corners that the vertices come from; what is beyond `len` is left from before.
+    pub fn corners(&self) -> [[u32; 2]; 4] {
+        [self.from[0].corners, self.from[1].corners, self.from[2].corners, self.from[3].corners]
+    }
+
+    /// Whether it has this point as a vertex.
+    #[inline]
+    pub fn has(&self, w: Vec3) -> bool {
+        is_same(self.w[0], w) | (self.len > 1 && is_same(self.w[1], w)) | (self.len > 2 && is_same(self.w[2], w))
+    }
+
+    fn vertex(&self, slot: usize) -> Vertex {
+        let Origin { on_a, corners } = self.from[slot];
+        Vertex { w: self.w[slot], on_a, corners }
     }
 
     /// The nearest point with the point of A it comes from.
+    #[inline]
     pub fn nearest(&self) -> Vertex {
-        let (v, weights) = (&self.vertices, self.weights);
-        let mut on_a = v[0].on_a * weights[0];
+        let (from, weights) = (&self.from, self.weights);
+        let mut on_a = from[0].on_a * weights[0];
         for i in 1..self.len {
-            on_a += v[i].on_a * weights[i];
+            on_a += from[i].on_a * weights[i];
         }
-        Vertex { w: self.x, on_a, corners: v[0].corners }
+        Vertex { w: self.x, on_a, corners: from[0].corners }
     }
 
     /// Direction from the origin to the feature, perpendicular to it: of any length, zero when it cannot be told.
@@ -75,20 +110,20 @@ impl Simplex {
     /// normal, an edge what is left of x after the edge's direction is taken out. The better of the two is returned.
     #[inline]
     pub fn direction(&self) -> Vec3 {
-        let [a, b, c, _] = &self.vertices;
+        let [a, b, c, _] = &self.w;
         match self.len {
             3 => {
-                let (ab, ac) = (b.w - a.w, c.w - a.w);
+                let (ab, ac) = (b - a, c - a);
                 let normal = ab.cross(&ac);
                 // Turn of the normal is about u S |e| / |ab x ac|, turn of x is about u S / |x|.
                 let edge = ab.norm_squared().max(ac.norm_squared());
                 if normal.norm_squared() <= self.x.norm_squared() * edge {
                     return self.x;
                 }
-                if normal.dot(&a.w) < 0.0 { opposite(normal) } else { normal }
+                if normal.dot(a) < 0.0 { opposite(normal) } else { normal }
             }
             2 => {
-                let along = b.w - a.w;
+                let along = b - a;
                 let square = along.norm_squared();
                 if square == 0.0 { self.x } else { self.x - along * (self.x.dot(&along) / square) }
             }
@@ -98,19 +133,21 @@ impl Simplex {
 
     /// Takes in a vertex and shrinks to what holds the nearest point. `extent`: no vertex is farther from the origin.
     #[inline]
-    pub fn add(&mut self, vertex: Vertex, extent: f64) -> Step {
-        self.vertices[self.len] = vertex;
-        let count = self.len + 1;
-        let w = [self.vertices[0].w, self.vertices[1].w, self.vertices[2].w, self.vertices[3].w];
+    pub fn add(&mut self, vertex: &Vertex, extent: f64) -> Step {
+        let (old, count) = (self.len, self.len + 1);
+        self.w[old] = vertex.w;
+        self.from[old] = Origin { on_a: vertex.on_a, corners: vertex.corners };
+        let w = &self.w;
         let guess = match count {
-            2 => Some(edge(&w, 0, 1).unwrap_or_else(|| corner(&w, 1))),
-            3 => Some(of_three(&w)),
-            _ => of_four(&w),
+            2 => Guess::Feature(edge(w, 0, 1).unwrap_or_else(|| corner(w, 1))),
+            3 => Guess::Feature(of_three(w)),
+            _ => of_four(w, extent),
         };
         let slack = 64.0 * UNIT_ROUNDOFF * extent;
-        let place = match guess.filter(|place| is_nearest(place, &w[..count], slack)) {
-            Some(place) => place,
-            None => match exhaustive(&w[..count]) {
+        let place = match guess {
+            Guess::Feature(place) if is_nearest(&place, w, count, slack) => place,
+            Guess::Inside => return Step::Enclosed,
+            _ => match exhaustive(&w[..count]) {
                 Some(place) => place,
                 None => return Step::Enclosed,
             },
@@ -121,33 +158,70 @@ impl Simplex {
         }
         for i in 0..place.len {
             // In increasing order, so that nothing is overwritten before it is moved.
-            if place.slots[i] != i {
-                self.vertices[i] = self.vertices[place.slots[i]];
+            let slot = place.slots[i];
+            if slot != i {
+                (self.w[i], self.from[i]) = (self.w[slot], self.from[slot]);
             }
         }
         (self.weights, self.len, self.x) = (place.weights, place.len, place.x);
         Step::Reduced
+    }
+
+    /// Radius of a ball around the origin that is in the enclosing tetrahedron: proved, metres; not positive when that is too thin
+    /// to tell. `extent` as for [`Simplex::add`].
+    ///
+    /// The plane of a face (p, q, r) is at p . (q x r) over the length of (q - p) x (r - p) = p x q + q x r + r x p. The first is
+    /// off by less than 8 u S^3, the second by less than 32 u S^2 (`docs/derivations/search.md`).
+    pub fn inner_ball(&self, extent: f64) -> f64 {
+        let [a, b, c, d] = &self.w;
+        let (ab, bc, ca) = (a.cross(b), b.cross(c), c.cross(a));
+        let (ad, bd, cd) = (a.cross(d), b.cross(d), c.cross(d));
+        let (volume_error, area_error) = (DOUBT * extent * extent * extent, 32.0 * UNIT_ROUNDOFF * extent * extent);
+        let offset = |volume: f64, area: Vec3| (volume.abs() - volume_error) / (area.norm() + area_error);
+        let of_old = offset(a.dot(&bc), ab + bc + ca);
+        let of_new = offset(d.dot(&ab), ab + bd - ad)
+            .min(offset(d.dot(&bc), bc + cd - bd))
+            .min(offset(d.dot(&ca), ca + ad - cd));
+        // A quotient and a product: a few units in the last place.
+        of_old.min(of_new) * (1.0 - 8.0 * UNIT_ROUNDOFF)
     }
 }
 
 /// The point of a triangle nearest the origin, with the point of A it comes from. `extent` as for [`Simplex::add`].
 pub(super) fn nearest_of_triangle([a, b, c]: [Vertex; 3], extent: f64) -> Vertex {
     let mut simplex = Simplex::point(a);
-    simplex.vertices[1] = b;
+    simplex.w[1] = b.w;
+    simplex.from[1] = Origin { on_a: b.on_a, corners: b.corners };
     simplex.len = 2;
     simplex.x = Vec3::repeat(f64::INFINITY); // Any point is nearer.
-    simplex.add(c, extent);
+    simplex.add(&c, extent);
     simplex.nearest()
 }
+
+/// What a look at the signs tells.
+enum Guess {
+    /// Probably here.
+    Feature(Place),
+    /// The origin is strictly inside: certain.
+    Inside,
+    /// The signs are too close to call.
+    Unclear,
+}
+
+/// A volume p . (q x r) of vertices no farther than S from the origin is off by less than this times S^3: each of the six
+/// products takes part in five roundings, and together they are no more than 6 / sqrt(27) S^3.
+const DOUBT: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// Whether no vertex left out lies before the plane through x across x, within rounding: then x is too far by no more than the
 /// slack, half of what a vertex may be off.
 #[inline(always)]
-fn is_nearest(place: &Place, w: &[Vec3], slack: f64) -> bool {
+fn is_nearest(place: &Place, w: &[Vec3; 4], count: usize, slack: f64) -> bool {
     let x = place.x;
     let least = x.norm_squared() - slack * sum_of_sizes(x);
-    let slots = &place.slots[..place.len];
-    (0..w.len()).all(|i| slots.contains(&i) || w[i].dot(&x) >= least)
+    // Slots beyond `len` repeat one before. No early end: the branches would cost more than the products.
+    let [p, q, r] = place.slots;
+    let is_in_front = |i: usize| i < count && i != p && i != q && i != r && w[i].dot(&x) < least;
+    !(is_in_front(0) | is_in_front(1) | is_in_front(2) | is_in_front(3))
 }
 
 #[inline]
@@ -209,27 +283,31 @@ fn nearer(one: Option<Place>, other: Option<Place>) -> Option<Place> {
     }
 }
 
-/// A guess for an old face and a new vertex: on one of the faces at the new vertex that the origin is beyond; none when it
-/// is beyond none of them.
+/// A guess for an old face and a new vertex: on one of the faces at the new vertex that the origin is beyond; inside when it
+/// is clearly beyond none of them, nor beyond the old one.
 #[inline]
-fn of_four(w: &[Vec3; 4]) -> Option<Place> {
+fn of_four(w: &[Vec3; 4], extent: f64) -> Guess {
     let [a, b, c, d] = *w;
+    let (ab, bc, ca) = (a.cross(&b), b.cross(&c), c.cross(&a));
+    // Six times the volumes with the origin in the place of the third old vertex: of the sign opposite to that of the whole
+    // when it is on the inner side.
+    let (of_ab, of_bc, of_ca) = (d.dot(&ab), d.dot(&bc), d.dot(&ca));
     let whole = (a - d).dot(&(b - d).cross(&(c - d)));
-    // Volumes with the origin in the place of the third old vertex have the sign of `whole` reversed when it is inside.
-    let is_beyond = |p: Vec3, q: Vec3| !(d.dot(&p.cross(&q)) * whole < 0.0);
-    let (of_ab, of_bc, of_ca) = (is_beyond(a, b), is_beyond(b, c), is_beyond(c, a));
-    if !(of_ab || of_bc || of_ca) {
-        return None;
+    let is_beyond = |volume: f64| !(volume * whole < 0.0);
+    if !(is_beyond(of_ab) || is_beyond(of_bc) || is_beyond(of_ca)) {
+        let of_old = a.dot(&bc) * whole.signum();
+        let least = of_old.min(of_ab.abs()).min(of_bc.abs()).min(of_ca.abs());
+        return if least > DOUBT * extent * extent * extent { Guess::Inside } else { Guess::Unclear };
     }
-    let mut best = if of_ab { face(w, 0, 1, 3) } else { None };
-    if of_bc {
+    let mut best = if is_beyond(of_ab) { face(w, 0, 1, 3) } else { None };
+    if is_beyond(of_bc) {
         best = nearer(best, face(w, 1, 2, 3));
     }
-    if of_ca {
+    if is_beyond(of_ca) {
         best = nearer(best, face(w, 0, 2, 3));
     }
     let edges = || nearer(nearer(edge(w, 0, 3), edge(w, 1, 3)), edge(w, 2, 3));
-    Some(best.or_else(edges).unwrap_or_else(|| corner(w, 3)))
+    Guess::Feature(best.or_else(edges).unwrap_or_else(|| corner(w, 3)))
 }
 
 /// The nearest of all features; none when four vertices strictly enclose the origin, by an exact test.
@@ -287,10 +365,12 @@ mod tests {
 
     fn of(vertices: &[Vertex]) -> Option<Simplex> {
         let mut simplex = Simplex::point(vertices[0]);
-        simplex.vertices[..vertices.len()].copy_from_slice(vertices);
+        for (slot, v) in vertices.iter().enumerate() {
+            (simplex.w[slot], simplex.from[slot]) = (v.w, Origin { on_a: v.on_a, corners: v.corners });
+        }
         simplex.len = vertices.len() - 1;
         simplex.x = Vec3::repeat(f64::INFINITY);
-        (simplex.add(vertices[vertices.len() - 1], 4.0) == Step::Reduced).then_some(simplex)
+        (simplex.add(&vertices[vertices.len() - 1], 4.0) == Step::Reduced).then_some(simplex)
     }
 
     #[test]

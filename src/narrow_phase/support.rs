@@ -19,7 +19,7 @@ pub(super) const NO_HINT: u32 = u32::MAX;
 
 /// The same, and which corner of the core it is (0 for a core without corners). `hint`: a corner that may be
 /// near, or [`NO_HINT`].
-#[inline]
+#[inline(always)]
 pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
     let d = direction;
     match core {
@@ -44,6 +44,7 @@ pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
 }
 
 /// The support point of a cylinder, a cone or an ellipsoid.
+#[inline(always)]
 fn round(core: &Core, d: Vec3) -> Vec3 {
     match core {
         Core::Cylinder { radius, half_length } => rim(*radius, half_length.copysign(d.z), d),
@@ -134,6 +135,7 @@ pub(super) fn radius(core: &Core) -> f64 {
 }
 
 /// Point of the disc of that radius at that height, farthest along `d`.
+#[inline(always)]
 fn rim(radius: f64, height: f64, d: Vec3) -> Vec3 {
     match unit(Vec3::new(d.x, d.y, 0.0)) {
         Some(u) => Vec3::new(radius * u.x, radius * u.y, height),
