@@ -56,16 +56,23 @@ impl ConvexHull {
     /// The product at that point, in exact arithmetic, is less than the greatest by no more than `6 u |direction|
     /// radius`, u being the unit roundoff.
     #[must_use]
+    #[inline]
     pub fn farthest(&self, direction: Vec3, hint: u32) -> u32 {
+        match self.scan.farthest_of_few(direction) {
+            Some(found) => found as u32,
+            None => self.farthest_of_many(direction, hint),
+        }
+    }
+
+    #[inline(never)]
+    fn farthest_of_many(&self, direction: Vec3, hint: u32) -> u32 {
         if let (Some(surface), Some(starts)) = (&self.surface, &self.starts) {
             let start = if (hint as usize) < self.points.len() { hint } else { starts.start(direction) };
             if let Some(vertex) = hull_climb::highest(&self.points, surface, self.radius, start, direction) {
                 return vertex;
             }
         }
-        let found = self.scan.farthest(direction);
-        // Copies of the first point fill the last block.
-        if found < self.points.len() { found as u32 } else { 0 }
+        self.scan.farthest(direction) as u32
     }
 
     /// Bounds in the hull's frame.

@@ -1,8 +1,8 @@
 //! The farthest of some points by looking at all of them, several at a time.
 //!
 //! Coordinates are kept apart (structure of arrays) in blocks of eight: an AVX-512 register, two of AVX2, four of NEON or
-//! SSE2. Which of them the processor has is found out at run time by the `pulp` crate; the same expression is evaluated for every point whatever the registers are, so the answer is the same
-//! bytes everywhere.
+//! SSE2. Which of them the processor has is found out at run time by the `pulp` crate; the same expression is evaluated for
+//! every point whatever the registers are, so the answer is the same bytes everywhere.
 
 use pulp::{Arch, NullaryFnOnce};
 
@@ -14,7 +14,8 @@ const LANES: usize = 8;
 /// From this many points on the widest registers pay for the jump to the code that uses them.
 const DISPATCHED: usize = 24;
 
-/// Points, coordinate by coordinate, filled up with copies of the first to whole blocks.
+/// Points, coordinate by coordinate, filled up to whole blocks with copies of the first, which are never the answer: of equals
+/// it is the first.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
     blocks: Vec<[[f64; LANES]; 3]>,
@@ -30,16 +31,20 @@ impl Scan {
     }
 
     /// Index of the point where `direction . x` is greatest; among equals the first.
-    #[inline]
     pub fn farthest(&self, direction: Vec3) -> usize {
-        match self.blocks.as_slice() {
-            [block] => {
-                let values = products(block, direction);
-                first_equal(&values, greatest(&values)).unwrap_or(0)
-            }
-            blocks if blocks.len() * LANES < DISPATCHED => farthest(blocks, direction),
-            blocks => self.arch.dispatch(Task { blocks, direction }),
+        if self.blocks.len() * LANES < DISPATCHED {
+            farthest(&self.blocks, direction)
+        } else {
+            self.arch.dispatch(Task { blocks: &self.blocks, direction })
         }
+    }
+
+    /// The same, where all points are in one block; none where not.
+    #[inline]
+    pub fn farthest_of_few(&self, direction: Vec3) -> Option<usize> {
+        let [block] = self.blocks.as_slice() else { return None };
+        let values = products(block, direction);
+        Some(first_equal(&values, greatest(&values)).unwrap_or(0))
     }
 }
 

@@ -5,6 +5,9 @@
 
 use super::Vec3;
 
+/// The zero vector, as a constant: `Vec3::zeros()` is a call.
+pub const ORIGIN: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+
 /// -v
 #[inline(always)]
 #[must_use]

@@ -4,14 +4,14 @@ use super::bracketing::Target;
 use super::epa::{Epa, epa};
 use super::escalation;
 use super::given::Given;
-use super::gjk::{End, Gjk, gjk};
+use super::gjk::{End, Gjk, first, gjk};
 use super::goal::{Depth, Goal};
 use super::ladder;
 use super::minkowski::Difference;
 use super::momentum::Steering;
-use super::outcome::{Cost, Separation, Termination};
+use super::outcome::{Bracket, Cost, Separation, Termination};
 use super::pair_cache::PairCache;
-use super::segments;
+use super::segments::Segments;
 use super::solver::Solver;
 use super::support::radius;
 use super::witness::{self, WITNESS_ERROR_ULPS};
@@ -40,17 +40,16 @@ pub(super) fn separation(a: Convex, b: Convex, goal: &Goal) -> Separation {
 /// The same, starting where the last query of the pair ended.
 #[inline]
 pub(super) fn separation_again(a: Convex, b: Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
-    escalation::settle(&a, &b, goal, in_doubles(&a, &b, goal, cache))
+    if goal.solver == Solver::Default
+        && let Some(pair) = Segments::of(&a, &b)
+    {
+        return pair.separation(goal, || by_search(&a, &b, goal, cache));
+    }
+    by_search(&a, &b, goal, cache)
 }
 
-/// What doubles know.
-#[inline]
-fn in_doubles(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
-    if goal.solver == Solver::Default
-        && let Some(found) = segments::separation(a, b, goal)
-    {
-        return found;
-    }
+/// Where no formula will do.
+fn by_search(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Separation {
     let b_in_a = Placement::relative(a.at, b.at);
     let extent = radius(a.core) + radius(b.core) + length(b_in_a.translation);
     let placement_error = a.placement_error + b.placement_error;
@@ -59,7 +58,7 @@ fn in_doubles(a: &Convex, b: &Convex, goal: &Goal, cache: &mut PairCache) -> Sep
     }
     // Below the normal numbers roundings are absolute.
     let denormal = 64.0 * f64::MIN_POSITIVE;
-    let difference = Difference::new(a.core, b.core, b_in_a, extent, placement_error + denormal, cache);
+    let difference = Difference::new(a.core, b.core, &b_in_a, extent, placement_error + denormal, cache);
     solved(a, b, goal, difference, 1.0)
 }
 
@@ -81,7 +80,7 @@ fn scaled_separation(
     let denormal = if extent == 0.0 { 0.0 } else { 64.0 * f64::MIN_POSITIVE };
     let placement_error = (a.placement_error + b.placement_error + denormal) * scale;
     let extent = radius(&core_a) + radius(&core_b) + length(b_in_a.translation);
-    solved(a, b, goal, Difference::new(&core_a, &core_b, b_in_a, extent, placement_error, cache), scale)
+    solved(a, b, goal, Difference::new(&core_a, &core_b, &b_in_a, extent, placement_error, cache), scale)
 }
 
 /// What the goal's solver finds out about the difference, as an answer about the shapes.
@@ -90,7 +89,11 @@ fn solved(a: &Convex, b: &Convex, goal: &Goal, mut difference: Difference, scale
     let target = Target::new(goal, a.swept_radius + b.swept_radius, scale);
     let mut cost = Cost { pairs: 1, ..Cost::default() };
     let found = ladder::solve(&mut difference, &target, &mut cost);
-    place(&found, a, &target, &difference, cost)
+    let bracket = target.bracket(found.lower, found.upper);
+    if escalation::needs_more(a, b, goal, &bracket, found.termination) {
+        return escalation::escalate(a, b, goal, place(&found, bracket, a, &target, difference.error, cost));
+    }
+    place(&found, bracket, a, &target, difference.error, cost)
 }
 
 /// The distance by GJK, starting along `start`, a direction from the origin to the difference; where that ends without one,
@@ -103,7 +106,8 @@ pub(super) fn by_gjk(
     target: &Target,
     cost: &mut Cost,
 ) -> Epa {
-    let found = gjk(difference, start, steering, target, cost);
+    let mut found = first(difference, start, target, cost);
+    gjk(&mut found, difference, steering, target, cost);
     let stopped = |termination| known(&found, termination);
     // Two errors, one from each end of the bracket, are as near as they can come.
     let at_floor = found.upper - found.lower <= 4.0 * difference.error;
@@ -138,9 +142,10 @@ fn known(found: &Gjk, termination: Termination) -> Epa {
 }
 
 /// From the scaled frame of A to the frame of both placements, swept radii included.
-#[inline]
-fn place(found: &Epa, a: &Convex, target: &Target, difference: &Difference, cost: Cost) -> Separation {
-    let bracket = target.bracket(found.lower, found.upper);
+///
+/// Out of line, so that the answer is written where it goes: copies of fresh structures wait for their parts.
+#[inline(never)]
+fn place(found: &Epa, bracket: Bracket, a: &Convex, target: &Target, error: f64, cost: Cost) -> Separation {
     // The witness pair measures best what has converged. What has not is measured by its best direction: on round
     // shapes a support value is exact where a polytope is still coarse.
     let of_cores = match found.termination {
@@ -149,16 +154,17 @@ fn place(found: &Epa, a: &Convex, target: &Target, difference: &Difference, cost
         | Termination::IterationLimit
         | Termination::TimeLimit
         | Termination::ClosedForm
-        | Termination::Exact => found.lower + difference.error,
+        | Termination::Exact => found.lower + error,
     };
     let signed_distance = (of_cores * target.unscale - target.radii).clamp(bracket.lower, bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.
     let normal = a.at.direction(opposite(found.direction));
     let point_on_a = a.at.point(found.nearest.on_a * target.unscale) + normal * a.swept_radius;
     let point_on_b = point_on_a + normal * signed_distance;
-    let normal_error = witness::normal_error(found.lower, found.upper);
-    let cores =
-        witness::point_error(found, (signed_distance + target.radii) * target.scale, difference.error) / target.scale;
+    let from_nearest = witness::from_nearest(found.lower, found.upper);
+    let normal_error = witness::normal_error(found.lower, from_nearest);
+    let distance = (signed_distance + target.radii) * target.scale;
+    let cores = witness::point_error(found, distance, from_nearest, error) * target.unscale;
     let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
     let point_error = cores + target.radii * normal_error.min(2.0) + rounding;
     Separation {

@@ -13,43 +13,42 @@ use super::unbounded::{Height, Unbounded};
 use super::{double_double, exact, revolution};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 
-/// `found`, or something narrower where that leaves the question open.
-#[inline]
-pub(super) fn settle(a: &Convex, b: &Convex, goal: &Goal, found: Separation) -> Separation {
-    if needs_more(a, b, goal, &found) { escalate(a, b, goal, found) } else { found }
-}
-
 /// Whether the question is open, the bracket too wide, or the exact answer asked for by name.
 #[inline]
-fn needs_more(a: &Convex, b: &Convex, goal: &Goal, found: &Separation) -> bool {
-    is_open(goal, found) || is_wide(a, b, goal, found) || goal.solver == Solver::Exact
+pub(super) fn needs_more(a: &Convex, b: &Convex, goal: &Goal, bracket: &Bracket, termination: Termination) -> bool {
+    is_open(goal, bracket, termination) || is_wide(a, b, goal, bracket, termination) || goal.solver == Solver::Exact
 }
 
 /// Whether a verdict is missing that more digits could give.
-fn is_open(goal: &Goal, found: &Separation) -> bool {
-    is_undecided(goal, &found.bracket) && found.termination != Termination::TimeLimit
+#[inline]
+fn is_open(goal: &Goal, bracket: &Bracket, termination: Termination) -> bool {
+    is_undecided(goal, bracket) && termination != Termination::TimeLimit
 }
 
 /// Whether the bracket is wider than asked, and several times wider than the errors of doubles have to leave it. A solver
 /// that was chosen for comparison keeps its own end.
-fn is_wide(a: &Convex, b: &Convex, goal: &Goal, found: &Separation) -> bool {
-    let gave_up = matches!(found.termination, Termination::IterationLimit | Termination::RoundingFloor);
+#[inline]
+fn is_wide(a: &Convex, b: &Convex, goal: &Goal, bracket: &Bracket, termination: Termination) -> bool {
+    let gave_up = matches!(termination, Termination::IterationLimit | Termination::RoundingFloor);
     let measured = goal.depth != Depth::Verdict && goal.solver == Solver::Default;
-    gave_up && measured && !goal.accuracy.is_met(&found.bracket) && {
-        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * (radius(a.core) + radius(b.core) + found.bracket.lower.abs());
-        found.bracket.width() > 8.0 * (error + a.placement_error + b.placement_error)
+    gave_up && measured && !goal.accuracy.is_met(bracket) && {
+        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * (radius(a.core) + radius(b.core) + bracket.lower.abs());
+        bracket.width() > 8.0 * (error + a.placement_error + b.placement_error)
     }
 }
 
-/// When the cut-off is not positive a contact is known already, and another one would change no verdict.
-fn is_undecided(goal: &Goal, bracket: &Bracket) -> bool {
+/// Whether the bracket leaves the verdict open. When the cut-off is not positive a contact is known already, and another one would
+/// change no verdict.
+#[inline]
+pub(super) fn is_undecided(goal: &Goal, bracket: &Bracket) -> bool {
     !goal.gives_a_verdict(bracket) && bracket.lower <= goal.cut_off && goal.cut_off > 0.0
 }
 
+/// `found`, or something narrower.
 #[cold]
-fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separation {
+pub(super) fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separation {
     found.cost.escalations += 1;
-    if is_wide(a, b, goal, &found) {
+    if is_wide(a, b, goal, &found.bracket, found.termination) {
         found = revolution::narrowed(a, b, goal, found);
     }
     if is_undecided(goal, &found.bracket)
@@ -57,7 +56,7 @@ fn escalate(a: &Convex, b: &Convex, goal: &Goal, mut found: Separation) -> Separ
     {
         found = merged(found, more);
     }
-    if needs_more(a, b, goal, &found)
+    if needs_more(a, b, goal, &found.bracket, found.termination)
         && let Some(more) = exact::separation(a, b, found.normal, goal)
     {
         found = merged(found, more);
@@ -85,7 +84,7 @@ pub(super) fn settle_wall(a: &Convex, wall: &Unbounded, goal: &Goal, found: Sepa
 
 fn is_enough_of_a_wall(goal: &Goal, found: &Separation) -> bool {
     match goal.depth {
-        Depth::Verdict => !is_open(goal, found),
+        Depth::Verdict => !is_open(goal, &found.bracket, found.termination),
         Depth::Distance | Depth::Penetration => goal.is_met(&found.bracket) || goal.is_decided(&found.bracket),
     }
 }

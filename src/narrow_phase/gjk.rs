@@ -20,7 +20,7 @@ use super::momentum::Steering;
 use super::outcome::Cost;
 use super::pair_cache::rebuilt;
 use super::simplex::{Simplex, Step};
-use super::support::unit;
+use super::support::{unit, with_length};
 use crate::geometry::Vec3;
 
 /// Rounds at most. Smooth pairs need some 50 for a relative width of 1e-9; the most seen in the test corpus is below
@@ -58,24 +58,22 @@ pub(super) enum End {
     OutOfTime,
 }
 
-/// Runs GJK on `difference`, starting along `start`, a direction from the origin to it, or with the simplex of the last
-/// query of the pair, and remembers where it ends.
+/// Runs GJK on `difference` from where [`first`] begins, and remembers where it ends.
 #[inline]
 pub(super) fn gjk(
+    found: &mut Gjk,
     difference: &mut Difference,
-    start: Vec3,
     mut steering: impl Steering,
     target: &Target,
     cost: &mut Cost,
-) -> Gjk {
-    let found = search(difference, start, &mut steering, target, cost);
+) {
+    search(found, difference, &mut steering, target, cost);
     difference.memory.note(&found.simplex, matches!(found.end, End::Enclosed), found.direction);
-    found
 }
 
-/// From a simplex that was remembered, or from the first vertex along `start`.
+/// The simplex of the last query of the pair, or the first vertex along `start`, a direction from the origin to the difference.
 #[inline]
-fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut Cost) -> Gjk {
+pub(super) fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
     let direction = unit(start).unwrap_or_else(Vec3::x);
     // To be told apart again a pair needs no more than the direction that told it last time.
@@ -97,21 +95,14 @@ fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut C
 }
 
 #[inline]
-fn search(
-    difference: &mut Difference,
-    start: Vec3,
-    steering: &mut impl Steering,
-    target: &Target,
-    cost: &mut Cost,
-) -> Gjk {
+fn search(best: &mut Gjk, difference: &mut Difference, steering: &mut impl Steering, target: &Target, cost: &mut Cost) {
     let error = difference.error;
-    let mut best = first(difference, start, target, cost);
     if matches!(best.end, End::Enclosed) {
-        return best;
+        return;
     }
-    if let Some(end) = settled(&best, target) {
+    if let Some(end) = settled(best, target) {
         best.end = end;
-        return best;
+        return;
     }
     let mut last = best.simplex.x;
     for _ in 0..MAX_ITERATIONS {
@@ -119,22 +110,23 @@ fn search(
             best.end = End::OutOfTime;
             break;
         }
-        let steered = steering.direction(best.simplex.x, last).and_then(unit);
-        let Some(direction) = steered.or_else(|| unit(best.simplex.direction())) else {
+        let steered = steering.direction(best.simplex.x, last).and_then(with_length);
+        // Not of unit length: so the root and the quotient are worked out beside the search for the vertex.
+        let Some((toward, length)) = steered.or_else(|| with_length(best.simplex.direction())) else {
             best.end = End::Stalled; // The origin is on the feature.
             break;
         };
-        let vertex = difference.lowest(direction);
+        let vertex = difference.lowest(toward);
         last = vertex.w;
         cost.supports += 1;
         cost.gjk_iterations += 1;
-        let value = direction.dot(&vertex.w) - error;
+        let value = toward.dot(&vertex.w) / length - error;
         if value > best.lower {
             best.lower = value;
-            best.direction = direction;
+            best.direction = toward / length;
         }
         // Here the best of both sides meet: the point of the last round, and the direction it led to.
-        if let Some(end) = settled(&best, target) {
+        if let Some(end) = settled(best, target) {
             best.end = end;
             break;
         }
@@ -154,10 +146,9 @@ fn search(
             }
         }
     }
-    best
 }
 
-#[inline]
+#[inline(always)]
 fn settled(best: &Gjk, target: &Target) -> Option<End> {
     if !target.may_be_enough(best.lower, best.upper) {
         return None;

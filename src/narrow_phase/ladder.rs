@@ -45,7 +45,7 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
         // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's.
         let (a, b) = (*a, *b);
         let is_verdict = target.goal.depth == Depth::Verdict;
-        if (is_verdict || apart_along_faces(a, b, &difference.b_in_a) <= 0.0)
+        if (is_verdict || apart_along_faces(a, b, difference.b_in_a) <= 0.0)
             && let Sat::Answer(answer) = boxes(a, b, difference, target, cost)
         {
             return answer;

@@ -93,9 +93,10 @@ impl Course<'_> {
         let signed_distance = (cores.estimate - self.radii).clamp(bracket.lower, bracket.upper);
         let normal = piece.at.direction(cores.direction);
         let point_on_a = piece.at.point(on_a) + normal * piece.swept_radius;
-        let normal_error = witness::normal_error(cores.lower, cores.upper);
+        let from_nearest = witness::from_nearest(cores.lower, cores.upper);
+        let normal_error = witness::normal_error(cores.lower, from_nearest);
         let short = (on_b - on_a - cores.direction * (signed_distance + self.radii)).norm();
-        let of_cores = short + witness::from_nearest(cores.lower, cores.upper) + 2.0 * cores.error;
+        let of_cores = short + from_nearest + 2.0 * cores.error;
         let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (self.radii + length(piece.at.translation));
         Separation {
             bracket,

@@ -6,7 +6,7 @@
 use arrayvec::ArrayVec;
 
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::vector::{is_same, opposite};
+use crate::geometry::vector::{ORIGIN, is_same, opposite};
 use crate::geometry::{Core, Placement, Vec3};
 
 use super::pair_cache::PairCache;
@@ -27,7 +27,7 @@ pub(super) struct Vertex {
 pub(super) struct Difference<'a> {
     pub a: &'a Core,
     pub b: &'a Core,
-    pub b_in_a: Placement,
+    pub b_in_a: &'a Placement,
     /// No vertex is farther than this from the origin, metres.
     pub extent: f64,
     /// E = 112 u S, S the extent, plus what the placement of the cores is off by: a vertex is within this distance of a
@@ -37,6 +37,7 @@ pub(super) struct Difference<'a> {
     /// The corners found last, and the direction, where a search along edges may start.
     hints: [u32; 2],
     last: Vec3,
+    last_square: f64,
     /// Where the last query of the pair ended, and then where this one did.
     pub memory: &'a mut PairCache,
 }
@@ -48,24 +49,25 @@ impl<'a> Difference<'a> {
     pub fn new(
         a: &'a Core,
         b: &'a Core,
-        b_in_a: Placement,
+        b_in_a: &'a Placement,
         extent: f64,
         placement_error: f64,
         memory: &'a mut PairCache,
     ) -> Self {
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
-        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: Vec3::zeros(), memory }
+        Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: ORIGIN, last_square: 0.0, memory }
     }
 
-    /// The vertex where `direction . c` is least, for a unit direction.
+    /// The vertex where `direction . c` is least, for a direction of any length whose square is a normal number.
     #[inline(never)]
     pub fn lowest(&mut self, direction: Vec3) -> Vertex {
-        // Far from the last direction a fresh start is nearer than the last corner.
-        let is_near = direction.dot(&self.last) > 0.9;
+        // Far from the last direction, by more than some 26 degrees, a fresh start is nearer than the last corner.
+        let (cosine, square) = (direction.dot(&self.last), direction.norm_squared());
+        let is_near = cosine > 0.0 && cosine * cosine > 0.81 * square * self.last_square;
         let [hint_a, hint_b] = if is_near { self.hints } else { [NO_HINT; 2] };
         let (on_a, corner_a) = farthest(self.a, opposite(direction), hint_a);
         let (on_b, corner_b) = farthest(self.b, self.b_in_a.direction_into(direction), hint_b);
-        (self.hints, self.last) = ([corner_a, corner_b], direction);
+        (self.hints, self.last, self.last_square) = ([corner_a, corner_b], direction, square);
         Vertex { w: on_a - self.b_in_a.point(on_b), on_a, corners: [corner_a, corner_b] }
     }
 
@@ -81,7 +83,7 @@ impl<'a> Difference<'a> {
     /// The direction that is remembered, if any, else the first guess.
     #[inline]
     pub fn start(&self) -> Vec3 {
-        if is_same(self.memory.direction, Vec3::zeros()) { self.centers() } else { self.memory.direction }
+        if is_same(self.memory.direction, ORIGIN) { self.centers() } else { self.memory.direction }
     }
 
     /// A first guess of the direction from the origin to the difference: between the centres of the bounds.

@@ -3,6 +3,7 @@
 use super::minkowski::Vertex;
 use super::simplex::{Simplex, Step};
 use crate::geometry::Vec3;
+use crate::geometry::vector::ORIGIN;
 
 /// The simplex and the direction that the last query of a pair ended with, kept by the caller between queries.
 ///
@@ -22,7 +23,7 @@ impl PairCache {
     /// Nothing is remembered.
     #[must_use]
     pub fn new() -> Self {
-        Self { corners: [[0; 2]; 4], len: 0, direction: Vec3::zeros() }
+        Self { corners: [[0; 2]; 4], len: 0, direction: ORIGIN }
     }
 
     /// Notes where a search ended.

@@ -39,7 +39,7 @@ pub(super) fn sat(difference: &mut Difference, target: &Target, cost: &mut Cost)
         return Some(boxes(*a, *b, difference, target, cost));
     }
     let a = SmallPolytope::of(difference.a)?;
-    let b = SmallPolytope::of(difference.b)?.placed(&difference.b_in_a);
+    let b = SmallPolytope::of(difference.b)?.placed(difference.b_in_a);
     let axes = Axes::new(&a, &b, difference.extent)?;
     let upper = axes.upper + difference.error;
     Some(concluded(axes.normal, upper, &|slack| axes.contact(slack), difference, target, cost))
@@ -48,9 +48,9 @@ pub(super) fn sat(difference: &mut Difference, target: &Target, cost: &mut Cost)
 /// Two boxes of these half extents.
 pub(super) fn boxes(a: Vec3, b: Vec3, difference: &mut Difference, target: &Target, cost: &mut Cost) -> Sat {
     let (error, b_in_a) = (difference.error, difference.b_in_a);
-    let axis = best_axis(a, b, &b_in_a, target.enough() + 2.0 * error, error);
+    let axis = best_axis(a, b, b_in_a, target.enough() + 2.0 * error, error);
     let upper = axis.value + BOX_AXIS_ERRORS * error;
-    let contact = |slack| axis.contact(a, b, &b_in_a, slack);
+    let contact = |slack| axis.contact(a, b, b_in_a, slack);
     concluded(axis.normal, upper, &contact, difference, target, cost)
 }
 

@@ -7,26 +7,35 @@
 
 use super::bracketing::Target;
 use super::convex::Convex;
+use super::escalation;
 use super::goal::Goal;
 use super::outcome::{Cost, Separation, Termination};
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
+use crate::geometry::vector::ORIGIN;
 use crate::geometry::{Core, Vec3, length};
 
 /// A segment in its place: its middle as an offset from the body's origin, and half its length; metres, common axes.
 struct Half {
     middle: Vec3,
     half: Vec3,
+    /// The square of the half's length.
+    square: f64,
+    /// No point is farther from the body's origin than this.
+    reach: f64,
 }
 
+#[inline(always)]
 fn placed(body: &Convex) -> Option<Half> {
-    let turned = |v: Vec3| body.at.direction(v);
-    match body.core {
-        Core::Point => Some(Half { middle: Vec3::zeros(), half: Vec3::zeros() }),
+    let (middle, half) = match body.core {
+        Core::Point => (ORIGIN, ORIGIN),
         Core::AxialSegment { half_length } => {
-            Some(Half { middle: Vec3::zeros(), half: turned(Vec3::new(0.0, 0.0, *half_length)) })
+            let axis = Vec3::new(body.at.rotation[(0, 2)], body.at.rotation[(1, 2)], body.at.rotation[(2, 2)]);
+            // The square need not be exact: nothing is proved with it.
+            let square = half_length * half_length;
+            return Some(Half { middle: ORIGIN, half: axis * *half_length, square, reach: *half_length });
         }
-        Core::Segment([p, q]) => Some(Half { middle: turned((p + q) * 0.5), half: turned((q - p) * 0.5) }),
+        Core::Segment([p, q]) => (body.at.direction((p + q) * 0.5), body.at.direction((q - p) * 0.5)),
         Core::Cuboid { .. }
         | Core::Cylinder { .. }
         | Core::Cone { .. }
@@ -36,69 +45,91 @@ fn placed(body: &Convex) -> Option<Half> {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => None,
+        | Core::Compound(_) => return None,
+    };
+    Some(Half { middle, half, square: half.norm_squared(), reach: length(middle) + length(half) })
+}
+
+/// Two bodies whose cores are points or segments.
+pub(super) struct Segments<'a> {
+    a: &'a Convex<'a>,
+    b: &'a Convex<'a>,
+    one: Half,
+    other: Half,
+}
+
+impl<'a> Segments<'a> {
+    /// None for other kinds.
+    #[inline(always)]
+    pub fn of(a: &'a Convex<'a>, b: &'a Convex<'a>) -> Option<Self> {
+        Some(Self { a, b, one: placed(a)?, other: placed(b)? })
+    }
+
+    /// The answer; where the formula's bracket is not as narrow as the goal needs it, that of `otherwise`.
+    #[inline(always)]
+    pub fn separation(&self, goal: &Goal, otherwise: impl FnOnce() -> Separation) -> Separation {
+        let Self { a, b, one, other } = self;
+        let from_origin_to_origin = b.at.translation - a.at.translation;
+        let between = from_origin_to_origin + (other.middle - one.middle);
+        let (s, t) = nearest(between, one, other);
+        let from_a_to_b = between + other.half * t - one.half * s;
+        let extent = one.reach + other.reach + length(from_origin_to_origin);
+        let square = from_a_to_b.norm_squared();
+        if !((UNSCALED_EXTENT.0..=UNSCALED_EXTENT.1).contains(&extent) && square > SMALLEST_SQUARE) {
+            return otherwise();
+        }
+        let distance = square.sqrt();
+        // Least of n . (b - a): each segment sticks out by |n . h|. Divided last, so that the root is worked out meanwhile.
+        let least = from_a_to_b.dot(&between) - from_a_to_b.dot(&one.half).abs() - from_a_to_b.dot(&other.half).abs();
+        let least = least / distance;
+        let normal = from_a_to_b / distance;
+        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
+        let target = Target::new(goal, a.swept_radius + b.swept_radius, 1.0);
+        let (lower, upper) = (least - error, distance + error);
+        let bracket = target.bracket(lower, upper);
+        let at_floor = distance - least <= 2.0 * error;
+        let is_enough = at_floor || target.is_decided(&bracket) || target.is_met(&bracket);
+        if !is_enough || escalation::is_undecided(goal, &bracket) {
+            return otherwise();
+        }
+        let signed_distance = (distance - target.radii).clamp(bracket.lower, bracket.upper);
+        let point_on_a = a.at.translation + (one.middle + one.half * s + normal * a.swept_radius);
+        let gap = witness::from_nearest(lower, upper);
+        let normal_error = witness::normal_error(lower, gap);
+        let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
+        let point_error = gap + 2.0 * error + target.radii * normal_error.min(2.0) + rounding;
+        Separation {
+            bracket,
+            signed_distance,
+            normal,
+            point_on_a,
+            point_on_b: point_on_a + normal * signed_distance,
+            point_error,
+            normal_error,
+            termination: Termination::ClosedForm,
+            subshape_a: 0,
+            subshape_b: 0,
+            cost: Cost { pairs: 1, supports: 1, ..Cost::default() },
+        }
     }
 }
 
-/// The answer, when both cores are points or segments and the formula's bracket is as narrow as the goal needs it.
-#[inline]
-pub(super) fn separation(a: &Convex, b: &Convex, goal: &Goal) -> Option<Separation> {
-    let (one, other) = (placed(a)?, placed(b)?);
-    let between = (b.at.translation - a.at.translation) + (other.middle - one.middle);
-    let (s, t) = nearest(between, one.half, other.half);
-    let from_a_to_b = between + other.half * t - one.half * s;
-    let distance = length(from_a_to_b);
-    let extent = length(one.half)
-        + length(other.half)
-        + length(one.middle)
-        + length(other.middle)
-        + length(b.at.translation - a.at.translation);
-    if !(UNSCALED_EXTENT.0..=UNSCALED_EXTENT.1).contains(&extent) || distance == 0.0 {
-        return None;
-    }
-    let normal = from_a_to_b / distance;
-    // Least of n . (b - a): each segment sticks out by |n . h|.
-    let least = normal.dot(&between) - normal.dot(&one.half).abs() - normal.dot(&other.half).abs();
-    let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
-    let target = Target::new(goal, a.swept_radius + b.swept_radius, 1.0);
-    let (lower, upper) = (least - error, distance + error);
-    let bracket = target.bracket(lower, upper);
-    let at_floor = distance - least <= 2.0 * error;
-    if !(target.is_decided(&bracket) || target.is_met(&bracket) || at_floor) {
-        return None;
-    }
-    let signed_distance = (distance - target.radii).clamp(bracket.lower, bracket.upper);
-    let point_on_a = a.at.translation + (one.middle + one.half * s + normal * a.swept_radius);
-    let normal_error = witness::normal_error(lower, upper);
-    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
-    let from_nearest = if lower > 0.0 { witness::gap(lower, upper) } else { 0.0 };
-    let point_error = from_nearest + 2.0 * error + target.radii * normal_error.min(2.0) + rounding;
-    Some(Separation {
-        bracket,
-        signed_distance,
-        normal,
-        point_on_a,
-        point_on_b: point_on_a + normal * signed_distance,
-        point_error,
-        normal_error,
-        termination: Termination::ClosedForm,
-        subshape_a: 0,
-        subshape_b: 0,
-        cost: Cost { pairs: 1, supports: 1, ..Cost::default() },
-    })
-}
+/// Nearer than the root of this, in metres, the general way is taken, which scales.
+const SMALLEST_SQUARE: f64 = 1e-200;
 
 /// Where on two segments `s p` and `between + t q`, s and t in -1..=1, they are nearest.
-#[inline]
-fn nearest(between: Vec3, p: Vec3, q: Vec3) -> (f64, f64) {
-    let (pp, qq, pq) = (p.dot(&p), q.dot(&q), p.dot(&q));
+#[inline(always)]
+fn nearest(between: Vec3, one: &Half, other: &Half) -> (f64, f64) {
+    let (p, q) = (one.half, other.half);
+    let (pp, qq, pq) = (one.square, other.square, p.dot(&q));
+    // The inverses first, all at once: what follows is one step after the other.
+    let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
+    let (of_pp, of_qq, of_both) = (inverse(pp), inverse(qq), inverse(pp * qq - pq * pq));
     let (along_p, along_q) = (between.dot(&p), between.dot(&q));
-    let cut = |numerator: f64, denominator: f64| {
-        if denominator > 0.0 { (numerator / denominator).clamp(-1.0, 1.0) } else { 0.0 }
-    };
-    let s = cut(along_p * qq - along_q * pq, pp * qq - pq * pq);
-    let t = cut(s * pq - along_q, qq);
-    (cut(t * pq + along_p, pp), t)
+    let cut = |x: f64| x.clamp(-1.0, 1.0);
+    let s = cut((along_p * qq - along_q * pq) * of_both);
+    let t = cut((s * pq - along_q) * of_qq);
+    (cut((t * pq + along_p) * of_pp), t)
 }
 
 #[cfg(test)]
@@ -108,6 +139,11 @@ mod tests {
     #[test]
     fn nearest_points_of_segments_by_hand() {
         let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
+        let nearest = |between: Vec3, p: Vec3, q: Vec3| {
+            let placed =
+                |half: Vec3| Half { middle: Vec3::zeros(), half, square: half.norm_squared(), reach: half.norm() };
+            super::nearest(between, &placed(p), &placed(q))
+        };
         assert_eq!(nearest(z, x, y), (0.0, 0.0), "crossing above one another");
         assert_eq!(nearest(x * 3.0, x, x), (1.0, -1.0), "one behind the other");
         assert_eq!(nearest(x * 3.0, x, -x), (1.0, 1.0), "the other way round");

@@ -12,7 +12,7 @@ use arrayvec::ArrayVec;
 use super::minkowski::Vertex;
 use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::vector::{is_same, opposite, sum_of_sizes};
+use crate::geometry::vector::{ORIGIN, is_same, opposite, sum_of_sizes};
 
 /// One to three vertices, and the point they hold that is nearest the origin.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub(super) struct Simplex {
     /// They mix the nearest point: positive, sum 1.
     weights: [f64; 3],
     len: usize,
+    /// Of an edge the way along it, of a face the product of two edges.
+    span: Vec3,
     /// The nearest point; metres.
     pub x: Vec3,
 }
@@ -51,6 +53,7 @@ struct Place {
     slots: [usize; 3],
     weights: [f64; 3],
     len: usize,
+    span: Vec3,
     x: Vec3,
 }
 
@@ -58,7 +61,7 @@ impl Simplex {
     #[inline]
     pub fn point(v: Vertex) -> Self {
         let from = Origin { on_a: v.on_a, corners: v.corners };
-        Self { w: [v.w; 4], from: [from; 4], weights: [1.0, 0.0, 0.0], len: 1, x: v.w }
+        Self { w: [v.w; 4], from: [from; 4], weights: [1.0, 0.0, 0.0], len: 1, span: ORIGIN, x: v.w }
     }
 
     /// The vertices of the feature that holds the nearest point.
@@ -110,20 +113,18 @@ impl Simplex {
     /// normal, an edge what is left of x after the edge's direction is taken out. The better of the two is returned.
     #[inline]
     pub fn direction(&self) -> Vec3 {
-        let [a, b, c, _] = &self.w;
         match self.len {
             3 => {
-                let (ab, ac) = (b - a, c - a);
-                let normal = ab.cross(&ac);
-                // Turn of the normal is about u S |e| / |ab x ac|, turn of x is about u S / |x|.
-                let edge = ab.norm_squared().max(ac.norm_squared());
+                let ([a, b, c, _], normal) = (&self.w, self.span);
+                // Turn of the normal is about u S |e| / |ac x bc|, turn of x is about u S / |x|.
+                let edge = (a - c).norm_squared().max((b - c).norm_squared());
                 if normal.norm_squared() <= self.x.norm_squared() * edge {
                     return self.x;
                 }
-                if normal.dot(a) < 0.0 { opposite(normal) } else { normal }
+                if normal.dot(c) < 0.0 { opposite(normal) } else { normal }
             }
             2 => {
-                let along = b - a;
+                let along = self.span;
                 let square = along.norm_squared();
                 if square == 0.0 { self.x } else { self.x - along * (self.x.dot(&along) / square) }
             }
@@ -141,7 +142,7 @@ impl Simplex {
         let guess = match count {
             2 => Guess::Feature(edge(w, 0, 1).unwrap_or_else(|| corner(w, 1))),
             3 => Guess::Feature(of_three(w)),
-            _ => of_four(w, extent),
+            _ => of_four(w, self.span, extent),
         };
         let slack = 64.0 * UNIT_ROUNDOFF * extent;
         let place = match guess {
@@ -163,7 +164,7 @@ impl Simplex {
                 (self.w[i], self.from[i]) = (self.w[slot], self.from[slot]);
             }
         }
-        (self.weights, self.len, self.x) = (place.weights, place.len, place.x);
+        (self.weights, self.len, self.span, self.x) = (place.weights, place.len, place.span, place.x);
         Step::Reduced
     }
 
@@ -226,7 +227,7 @@ fn is_nearest(place: &Place, w: &[Vec3; 4], count: usize, slack: f64) -> bool {
 
 #[inline]
 fn corner(w: &[Vec3; 4], i: usize) -> Place {
-    Place { slots: [i; 3], weights: [1.0, 0.0, 0.0], len: 1, x: w[i] }
+    Place { slots: [i; 3], weights: [1.0, 0.0, 0.0], len: 1, span: ORIGIN, x: w[i] }
 }
 
 /// The nearest point of an edge when it is strictly between the ends.
@@ -241,7 +242,7 @@ fn edge(w: &[Vec3; 4], i: usize, j: usize) -> Option<Place> {
     }
     let whole = from_a + from_b;
     let (of_a, of_b) = (from_b / whole, from_a / whole);
-    Some(Place { slots: [i, j, j], weights: [of_a, of_b, 0.0], len: 2, x: a * of_a + b * of_b })
+    Some(Place { slots: [i, j, j], weights: [of_a, of_b, 0.0], len: 2, span: along, x: a * of_a + b * of_b })
 }
 
 /// The nearest point of a face when it is strictly inside.
@@ -265,7 +266,8 @@ fn face(w: &[Vec3; 4], i: usize, j: usize, k: usize) -> Option<Place> {
     let share = 1.0 / whole;
     let (of_a, of_b) = (of_a * share, of_b * share);
     let of_c = 1.0 - of_a - of_b;
-    Some(Place { slots: [i, j, k], weights: [of_a, of_b, of_c], len: 3, x: c + ca * of_a + cb * of_b })
+    let x = c + ca * of_a + cb * of_b;
+    Some(Place { slots: [i, j, k], weights: [of_a, of_b, of_c], len: 3, span: normal, x })
 }
 
 /// A guess for two old vertices and a new one: the feature has the new one in it.
@@ -284,15 +286,15 @@ fn nearer(one: Option<Place>, other: Option<Place>) -> Option<Place> {
 }
 
 /// A guess for an old face and a new vertex: on one of the faces at the new vertex that the origin is beyond; inside when it
-/// is clearly beyond none of them, nor beyond the old one.
+/// is clearly beyond none of them, nor beyond the old one. `normal`: (a - c) x (b - c) of the old face (a, b, c).
 #[inline]
-fn of_four(w: &[Vec3; 4], extent: f64) -> Guess {
+fn of_four(w: &[Vec3; 4], normal: Vec3, extent: f64) -> Guess {
     let [a, b, c, d] = *w;
     let (ab, bc, ca) = (a.cross(&b), b.cross(&c), c.cross(&a));
     // Six times the volumes with the origin in the place of the third old vertex: of the sign opposite to that of the whole
     // when it is on the inner side.
     let (of_ab, of_bc, of_ca) = (d.dot(&ab), d.dot(&bc), d.dot(&ca));
-    let whole = (a - d).dot(&(b - d).cross(&(c - d)));
+    let whole = normal.dot(&(c - d));
     let is_beyond = |volume: f64| !(volume * whole < 0.0);
     if !(is_beyond(of_ab) || is_beyond(of_bc) || is_beyond(of_ca)) {
         let of_old = a.dot(&bc) * whole.signum();
@@ -341,7 +343,7 @@ fn exhaustive(vertices: &[Vec3]) -> Option<Place> {
 
 /// Whether the origin is strictly inside of the tetrahedron. Exact.
 fn is_enclosed(&[a, b, c, d]: &[Vec3; 4]) -> bool {
-    let origin = Vec3::zeros();
+    let origin = ORIGIN;
     let whole = orientation(a, b, c, d);
     let same_side = |p, q, r| orientation(p, q, r, origin) * whole.signum() > 0.0;
     whole != 0.0 && same_side(a, b, c) && same_side(a, d, b) && same_side(a, c, d) && same_side(b, d, c)
@@ -369,6 +371,10 @@ mod tests {
             (simplex.w[slot], simplex.from[slot]) = (v.w, Origin { on_a: v.on_a, corners: v.corners });
         }
         simplex.len = vertices.len() - 1;
+        simplex.span = match simplex.len {
+            3 => (simplex.w[0] - simplex.w[2]).cross(&(simplex.w[1] - simplex.w[2])),
+            _ => simplex.w[1] - simplex.w[0],
+        };
         simplex.x = Vec3::repeat(f64::INFINITY);
         (simplex.add(&vertices[vertices.len() - 1], 4.0) == Step::Reduced).then_some(simplex)
     }

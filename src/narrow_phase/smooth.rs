@@ -23,7 +23,7 @@ const MAX_STEPS: u32 = 16;
 pub(super) struct Smooth<'a> {
     a: &'a Core,
     b: &'a Core,
-    b_in_a: Placement,
+    b_in_a: &'a Placement,
 }
 
 impl<'a> Smooth<'a> {

@@ -1,6 +1,6 @@
 //! Support functions: the point of a core that lies farthest in a direction.
 
-use crate::geometry::vector::greatest_size;
+use crate::geometry::vector::{ORIGIN, greatest_size};
 use crate::geometry::{Aabb, Core, Vec3, length};
 
 /// A point of the convex, bounded core where `direction . x` is greatest, in the core's frame. Among equals the first.
@@ -33,7 +33,7 @@ pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
             (hull.points()[corner as usize], corner)
         }
         Core::Triangle(corners) => first_farthest(corners, d),
-        Core::Point => (Vec3::zeros(), 0),
+        Core::Point => (ORIGIN, 0),
         Core::AxialSegment { half_length } => (Vec3::new(0.0, 0.0, half_length.copysign(d.z)), u32::from(d.z < 0.0)),
         Core::Segment(ends) => first_farthest(ends, d),
         Core::Cylinder { .. } | Core::Cone { .. } | Core::Ellipsoid { .. } => (round(core, d), 0),
@@ -59,7 +59,7 @@ fn round(core: &Core, d: Vec3) -> Vec3 {
             let stretched = radii.component_mul(&d);
             match unit(stretched) {
                 Some(u) => radii.component_mul(&u),
-                None => Vec3::zeros(), // Flat across the direction: the centre is as far as any point.
+                None => ORIGIN, // Flat across the direction: the centre is as far as any point.
             }
         }
         Core::Point
@@ -78,7 +78,7 @@ fn round(core: &Core, d: Vec3) -> Vec3 {
 /// The corners of a polytope, in the core's frame; none for cores that are not polytopes.
 pub(super) fn corners(core: &Core) -> Vec<Vec3> {
     match core {
-        Core::Point => vec![Vec3::zeros()],
+        Core::Point => vec![ORIGIN],
         Core::Cuboid { half_extents } => {
             let sign = |corner: u32, axis: u32| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
             (0..8).map(|n| half_extents.component_mul(&Vec3::new(sign(n, 0), sign(n, 1), sign(n, 2)))).collect()
@@ -150,6 +150,13 @@ pub(super) fn unit(v: Vec3) -> Option<Vec3> {
     if square > 1e-280 && square < 1e280 { Some(v / square.sqrt()) } else { extreme_unit(v) }
 }
 
+/// A vector in the direction of `v` with its length, which neither over- nor underflow when squared; none for zero.
+#[inline]
+pub(super) fn with_length(v: Vec3) -> Option<(Vec3, f64)> {
+    let square = v.norm_squared();
+    if square > 1e-280 && square < 1e280 { Some((v, square.sqrt())) } else { Some((extreme_unit(v)?, 1.0)) }
+}
+
 #[cold]
 fn extreme_unit(v: Vec3) -> Option<Vec3> {
     let largest = greatest_size(v);
@@ -182,7 +189,7 @@ pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
         Core::AxialSegment { half_length } => {
             (n < 2).then(|| Vec3::new(0.0, 0.0, if n == 1 { -half_length } else { *half_length }))
         }
-        Core::Point => (n == 0).then(Vec3::zeros),
+        Core::Point => (n == 0).then_some(ORIGIN),
         Core::Cylinder { .. }
         | Core::Cone { .. }
         | Core::Ellipsoid { .. }
@@ -208,7 +215,7 @@ pub(super) fn center(core: &Core) -> Vec3 {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => Vec3::zeros(),
+        | Core::Compound(_) => ORIGIN,
     }
 }
 

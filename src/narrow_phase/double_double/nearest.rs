@@ -118,7 +118,7 @@ impl Best {
         let distance = DoubleDouble::from((signed_distance + a.swept_radius + b.swept_radius) * scale);
         let short = (self.nearest.w - self.direction * distance).norm().to_f64();
         let from_nearest = witness::from_nearest(lower, upper);
-        let normal_error = witness::normal_error(lower, upper);
+        let normal_error = witness::normal_error(lower, from_nearest);
         let radii = (a.swept_radius + b.swept_radius) * normal_error.min(2.0);
         let rounding = witness::rounding_of_points(a, b, signed_distance);
         let met = goal.accuracy.is_met(&bracket);
