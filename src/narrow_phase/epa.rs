@@ -57,7 +57,7 @@ pub(super) fn epa(difference: &mut Difference, seeds: &[Vertex], known: Epa, tar
         Start::Flat(across) => {
             for direction in [across, -across] {
                 cost.supports += 1;
-                raise_lower(&mut best, direction, direction.dot(&difference.lowest(direction).w), difference);
+                raise_lower(&mut best, direction, direction.dot(&lowest(difference, direction).w), difference);
             }
             if target.is_met(&target.bracket(best.lower, best.upper)) {
                 best.termination = Termination::Converged;
@@ -112,7 +112,7 @@ fn expand(
             best.upper = best.upper.min(error - ball);
         }
         let outward = polytope.face(face).normal;
-        let vertex = difference.lowest(opposite(outward));
+        let vertex = lowest(difference, opposite(outward));
         cost.supports += 1;
         cost.epa_iterations += 1;
         if raise_lower(&mut best, opposite(outward), -outward.dot(&vertex.w), difference) {
@@ -177,6 +177,12 @@ fn nearest_in_plane(polytope: &Polytope, best: &Epa, difference: &Difference) ->
     nearest
 }
 
+/// One copy of the support function is enough here, where the polytope is most of the work.
+#[inline(never)]
+fn lowest(difference: &mut Difference, direction: Vec3) -> Vertex {
+    difference.lowest(direction)
+}
+
 /// Takes note of `value`, the least of `direction . c` over C, and says whether it is the best so far.
 fn raise_lower(best: &mut Epa, direction: Vec3, value: f64, difference: &Difference) -> bool {
     let better = value - difference.error > best.lower;
@@ -203,8 +209,8 @@ fn starting_vertices(difference: &mut Difference, pool: &mut Pool, cost: &mut Co
     let thin = 4.0 * difference.error;
     let mut ask = |directions: &[Vec3], pool: &mut Pool| {
         for d in directions {
-            pool.push(difference.lowest(*d));
-            pool.push(difference.lowest(-d));
+            pool.push(lowest(difference, *d));
+            pool.push(lowest(difference, -d));
             cost.supports += 2;
         }
     };

@@ -59,7 +59,7 @@ impl<'a> Difference<'a> {
     }
 
     /// The vertex where `direction . c` is least, for a direction of any length whose square is a normal number.
-    #[inline(never)]
+    #[inline(always)]
     pub fn lowest(&mut self, direction: Vec3) -> Vertex {
         // Far from the last direction, by more than some 26 degrees, a fresh start is nearer than the last corner.
         let (cosine, square) = (direction.dot(&self.last), direction.norm_squared());

@@ -14,7 +14,7 @@ use super::simplex::orientation;
 use super::support::unit;
 use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::vector::sum_of_sizes;
+use crate::geometry::vector::ORIGIN;
 
 /// Vertices at most.
 const VERTICES: usize = 520;
@@ -224,28 +224,33 @@ impl Polytope {
         }
     }
 
+    #[inline]
     fn add_face(&mut self, corners: [u16; 3], adjacent: [u16; 3]) -> u16 {
         let at = |i: usize| self.vertices[usize::from(corners[i])].w;
         let (a, b, c) = (at(0), at(1), at(2));
         let product = (b - a).cross(&(c - a));
         let (normal, offset) = plane(product, a, b, c, self.slack);
-        let mut face = Face { corners, adjacent, normal, offset, product, holds_origin: false, alive: true };
-        face.holds_origin = self.side(&face, Vec3::zeros()) > 0.0;
-        self.not_holding += usize::from(!face.holds_origin);
-        let slot = match self.free.pop() {
-            Some(slot) => {
-                self.faces[usize::from(slot)] = face;
-                self.queue[usize::from(slot)] = offset;
-                return slot;
-            }
-            None => self.faces.len() as u16,
+        let side_of_origin = product.dot(&a);
+        let holds_origin = if side_of_origin.abs() > self.doubt {
+            side_of_origin > 0.0
+        } else {
+            orientation(a, b, c, ORIGIN) > 0.0
         };
-        self.faces.push(face);
-        self.queue.push(offset);
-        slot
+        self.not_holding += usize::from(!holds_origin);
+        let face = Face { corners, adjacent, normal, offset, product, holds_origin, alive: true };
+        if let Some(slot) = self.free.pop() {
+            self.faces[usize::from(slot)] = face;
+            self.queue[usize::from(slot)] = offset;
+            slot
+        } else {
+            self.faces.push(face);
+            self.queue.push(offset);
+            self.faces.len() as u16 - 1
+        }
     }
 
     /// Positive inside, negative outside, zero on the plane of the face. Exact in its sign.
+    #[inline]
     fn side(&self, face: &Face, point: Vec3) -> f64 {
         let corner = |i: usize| self.vertices[usize::from(face.corners[i])].w;
         let rounded = -face.product.dot(&(point - corner(0)));
