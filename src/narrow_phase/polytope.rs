@@ -231,11 +231,8 @@ impl Polytope {
         let product = (b - a).cross(&(c - a));
         let (normal, offset) = plane(product, a, b, c, self.slack);
         let side_of_origin = product.dot(&a);
-        let holds_origin = if side_of_origin.abs() > self.doubt {
-            side_of_origin > 0.0
-        } else {
-            orientation(a, b, c, ORIGIN) > 0.0
-        };
+        let holds_origin =
+            if side_of_origin.abs() > self.doubt { side_of_origin > 0.0 } else { orientation(a, b, c, ORIGIN) > 0.0 };
         self.not_holding += usize::from(!holds_origin);
         let face = Face { corners, adjacent, normal, offset, product, holds_origin, alive: true };
         if let Some(slot) = self.free.pop() {
