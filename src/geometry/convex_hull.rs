@@ -5,7 +5,7 @@ use super::hull_climb::{self, StartTable};
 use super::hull_scan::Scan;
 use super::hull_surface::HullSurface;
 use super::shape::position;
-use super::{Aabb, InvalidShape, Vec3, length};
+use super::{Aabb, HullInterior, InvalidShape, Vec3, length};
 
 /// The convex hull of some points, possibly flat, a segment or a single point.
 ///
@@ -18,12 +18,16 @@ pub struct ConvexHull {
     surface: Option<HullSurface>,
     /// Of hulls that are large enough for climbing to pay.
     starts: Option<StartTable>,
+    interior: Option<HullInterior>,
     bounds: Aabb,
     radius: f64,
 }
 
 /// From this many points on the support function climbs along edges instead of looking at every point.
 const CLIMBED: usize = 56;
+
+/// From this many points on an ellipsoid fills enough of the hull to be worth asking.
+const ROUND: usize = 24;
 
 impl ConvexHull {
     /// # Errors
@@ -81,6 +85,13 @@ impl ConvexHull {
         self.bounds
     }
 
+    /// What is known about its inside. Nothing where it has no proved surface, or its bounds' middle is not inside; nor of hulls of
+    /// few corners, into which no large ellipsoid fits.
+    #[must_use]
+    pub fn interior(&self) -> Option<&HullInterior> {
+        self.interior.as_ref()
+    }
+
     /// Largest distance of a point from the origin, metres.
     #[must_use]
     pub fn radius(&self) -> f64 {
@@ -103,7 +114,9 @@ impl ConvexHull {
         let radius = points.iter().map(|p| length(*p)).fold(0.0, f64::max);
         let climbed = surface.as_ref().filter(|_| points.len() >= CLIMBED);
         let starts = climbed.map(|surface| StartTable::new(&points, surface));
-        Self { scan: Scan::new(&points), points, surface, starts, bounds, radius }
+        let round = surface.as_ref().filter(|_| points.len() >= ROUND);
+        let interior = round.and_then(|surface| HullInterior::of(&points, surface, &bounds, radius));
+        Self { scan: Scan::new(&points), points, surface, starts, interior, bounds, radius }
     }
 }
 

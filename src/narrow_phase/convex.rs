@@ -6,7 +6,6 @@ use super::escalation;
 use super::given::Given;
 use super::gjk::{End, Gjk, first, gjk};
 use super::goal::{Depth, Goal};
-use super::ladder;
 use super::minkowski::Difference;
 use super::momentum::Steering;
 use super::outcome::{Bracket, Cost, Separation, Termination};
@@ -15,6 +14,7 @@ use super::segments::Segments;
 use super::solver::Solver;
 use super::support::radius;
 use super::witness::{self, WITNESS_ERROR_ULPS};
+use super::{ladder, line_of_centers};
 use crate::geometry::tolerance::{UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Vec3, length};
@@ -107,6 +107,9 @@ pub(super) fn by_gjk(
     cost: &mut Cost,
 ) -> Epa {
     let mut found = first(difference, start, target, cost);
+    if difference.memory.len == 0 && target.may_be_decided_from_above(found.lower) {
+        found.upper = found.upper.min(line_of_centers::upper_bound(difference));
+    }
     gjk(&mut found, difference, steering, target, cost);
     let stopped = |termination| known(&found, termination);
     // Two errors, one from each end of the bracket, are as near as they can come.

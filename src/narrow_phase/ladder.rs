@@ -9,8 +9,8 @@ use super::minkowski::Difference;
 use super::momentum::{Momentum, Plain};
 use super::outcome::{Cost, Termination};
 use super::qp::qp;
-use super::sat::{Sat, boxes, sat};
-use super::sat_boxes::apart_along_faces;
+use super::sat::{Sat, boxes, parted, sat};
+use super::sat_boxes::Faces;
 use super::smooth::{self, Smooth};
 use super::solver::Solver;
 use crate::geometry::Core;
@@ -45,8 +45,12 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
         // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's.
         let (a, b) = (*a, *b);
         let is_verdict = target.goal.depth == Depth::Verdict;
-        if (is_verdict || apart_along_faces(a, b, difference.b_in_a) <= 0.0)
-            && let Sat::Answer(answer) = boxes(a, b, difference, target, cost)
+        let faces = Faces::of(a, b, difference.b_in_a);
+        if is_verdict && let Some(answer) = parted(&faces, difference, target) {
+            return answer;
+        }
+        if (is_verdict || faces.value <= 0.0)
+            && let Sat::Answer(answer) = boxes(a, b, faces, difference, target, cost)
         {
             return answer;
         }

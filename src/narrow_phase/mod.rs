@@ -25,6 +25,7 @@ mod inside;
 mod ladder;
 mod least;
 mod leaves;
+mod line_of_centers;
 mod minkowski;
 mod momentum;
 mod outcome;

@@ -34,16 +34,14 @@ enum Feature {
 /// Axes other than i, in cyclic order.
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// The best axis of boxes of half extents `a` and `b`. Ends early with any axis along which they are more than `enough` apart.
+/// The best axis of boxes of half extents `a` and `b`, whose faces have been looked along. Ends early with any axis along which
+/// they are more than `enough` apart.
 ///
 /// Edges have to win by more than `slack`, metres: of edges that are parallel but for rounding, the product may happen to be the
 /// normal of a face, and then it is the face that touches.
-pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack: f64) -> BoxAxis {
+pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, faces: Faces, enough: f64, slack: f64) -> BoxAxis {
     let (m, t) = (&b_in_a.rotation, &b_in_a.translation);
-    let (of_a, of_b) = along_faces(a, b, b_in_a);
-    let (i, j) = (greatest(&of_a), greatest(&of_b));
-    let (feature, face) =
-        if of_a[i] >= of_b[j] { (Feature::FaceOfA(i), of_a[i]) } else { (Feature::FaceOfB(j), of_b[j]) };
+    let Faces { value: face, feature } = faces;
     // The best value as a fraction: v |v| / |n|^2 grows with v / |n|.
     let (mut best, mut square, mut winner) = (face * face.abs(), 1.0, feature);
     if face <= enough {
@@ -71,8 +69,7 @@ pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack
     }
     let toward_b = |n: Vec3| if n.dot(t) < 0.0 { opposite(n) } else { n };
     let normal = match winner {
-        Feature::FaceOfA(i) => Vec3::ith(i, 1.0),
-        Feature::FaceOfB(j) => m.column(j).normalize(),
+        Feature::FaceOfA(_) | Feature::FaceOfB(_) => faces.normal(b_in_a),
         Feature::Edges(i, j) => {
             let [p, q] = OTHERS[i];
             let length = square.sqrt();
@@ -84,21 +81,50 @@ pub(super) fn best_axis(a: Vec3, b: Vec3, b_in_a: &Placement, enough: f64, slack
     BoxAxis { normal: toward_b(normal), value, feature: winner }
 }
 
-/// The greatest signed distance along the normals of faces, metres: cheap to look at first.
-pub(super) fn apart_along_faces(a: Vec3, b: Vec3, b_in_a: &Placement) -> f64 {
-    let (of_a, of_b) = along_faces(a, b, b_in_a);
-    of_a[greatest(&of_a)].max(of_b[greatest(&of_b)])
+/// The normal of a face along which boxes are farthest apart, or least deep in one another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Faces {
+    /// The signed distance along it, metres.
+    pub value: f64,
+    feature: Feature,
 }
 
-/// The signed distances along the normals of the faces of A and of B.
-#[inline(always)]
-fn along_faces(a: Vec3, b: Vec3, b_in_a: &Placement) -> (Vec3, Vec3) {
-    let (m, t) = (&b_in_a.rotation, &b_in_a.translation);
-    let size = |i: usize, j: usize| m[(i, j)].abs();
-    let along_b = b_in_a.direction_into(*t);
-    let of_a = |i: usize| t[i].abs() - a[i] - (size(i, 0) * b.x + size(i, 1) * b.y + size(i, 2) * b.z);
-    let of_b = |j: usize| along_b[j].abs() - b[j] - (size(0, j) * a.x + size(1, j) * a.y + size(2, j) * a.z);
-    (Vec3::new(of_a(0), of_a(1), of_a(2)), Vec3::new(of_b(0), of_b(1), of_b(2)))
+impl Faces {
+    /// Looks along the six normals of two boxes: cheap, and enough to part most.
+    #[inline(always)]
+    pub fn of(a: Vec3, b: Vec3, b_in_a: &Placement) -> Self {
+        let (m, t) = (&b_in_a.rotation, &b_in_a.translation);
+        let size = |i: usize, j: usize| m[(i, j)].abs();
+        let along_b = b_in_a.direction_into(*t);
+        let of_a = |i: usize| t[i].abs() - a[i] - (size(i, 0) * b.x + size(i, 1) * b.y + size(i, 2) * b.z);
+        let of_b = |j: usize| along_b[j].abs() - b[j] - (size(0, j) * a.x + size(1, j) * a.y + size(2, j) * a.z);
+        let (of_a, of_b) = (Vec3::new(of_a(0), of_a(1), of_a(2)), Vec3::new(of_b(0), of_b(1), of_b(2)));
+        let (i, j) = (greatest(&of_a), greatest(&of_b));
+        if of_a[i] >= of_b[j] {
+            Self { value: of_a[i], feature: Feature::FaceOfA(i) }
+        } else {
+            Self { value: of_b[j], feature: Feature::FaceOfB(j) }
+        }
+    }
+
+    /// The unit normal, one way or the other.
+    #[inline]
+    fn normal(&self, b_in_a: &Placement) -> Vec3 {
+        let m = &b_in_a.rotation;
+        match self.feature {
+            Feature::FaceOfA(0) => Vec3::new(1.0, 0.0, 0.0),
+            Feature::FaceOfA(1) => Vec3::new(0.0, 1.0, 0.0),
+            Feature::FaceOfA(_) => Vec3::new(0.0, 0.0, 1.0),
+            Feature::FaceOfB(j) | Feature::Edges(_, j) => Vec3::new(m[(0, j)], m[(1, j)], m[(2, j)]).normalize(),
+        }
+    }
+
+    /// The unit normal from A to B.
+    #[inline]
+    pub fn toward_b(&self, b_in_a: &Placement) -> Vec3 {
+        let normal = self.normal(b_in_a);
+        if normal.dot(&b_in_a.translation) < 0.0 { opposite(normal) } else { normal }
+    }
 }
 
 fn greatest(v: &Vec3) -> usize {

@@ -11,6 +11,7 @@
 
 use super::bracketing::Target;
 use super::epa::Epa;
+use super::line_of_centers;
 use super::minkowski::{Difference, Vertex};
 use super::outcome::{Cost, Termination};
 use super::support::unit;
@@ -80,7 +81,10 @@ pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target
         cost.supports += 1;
         cost.gjk_iterations += 1;
         let gap = direction.dot(&vertex.w);
-        let (lower, upper) = (gap - error, vertex.w.norm() + error);
+        let (lower, mut upper) = (gap - error, vertex.w.norm() + error);
+        if widest == f64::NEG_INFINITY && target.may_be_decided_from_above(lower) {
+            upper = upper.min(line_of_centers::upper_bound(difference));
+        }
         let bracket = target.bracket(lower, upper);
         let found = |termination| Some(Epa { lower, upper, direction, nearest: vertex, termination });
         difference.memory.direction = direction;

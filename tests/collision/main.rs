@@ -3,6 +3,7 @@
 
 mod caches;
 mod closed_forms;
+mod early_outs;
 mod extremes;
 mod hard_cases;
 mod known_failures;
