@@ -148,7 +148,7 @@ fn known(found: &Gjk, termination: Termination) -> Epa {
 ///
 /// Out of line, so that the answer is written where it goes: copies of fresh structures wait for their parts.
 #[inline(never)]
-fn place(found: &Epa, bracket: Bracket, a: &Convex, target: &Target, error: f64, cost: Cost) -> Separation {
+pub(super) fn place(found: &Epa, bracket: Bracket, a: &Convex, target: &Target, error: f64, cost: Cost) -> Separation {
     // The witness pair measures best what has converged. What has not is measured by its best direction: on round
     // shapes a support value is exact where a polytope is still coarse.
     let of_cores = match found.termination {

@@ -17,6 +17,7 @@ mod double_double;
 mod epa;
 mod escalation;
 mod exact;
+mod far_apart;
 mod frank_wolfe;
 mod given;
 mod gjk;

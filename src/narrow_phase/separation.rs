@@ -1,6 +1,7 @@
 //! The door of the narrow phase: any shape against any shape.
 
 use super::convex::{self, Convex};
+use super::far_apart;
 use super::given::Given;
 use super::goal::Goal;
 use super::outcome::Separation;
@@ -78,6 +79,9 @@ pub fn separation_again(
             given: Given::alone(b, at_b),
         };
         return Ok(convex::separation_again(one, other, goal, cache));
+    }
+    if let Some(found) = far_apart::parted(a, b, at_a, at_b, goal) {
+        return Ok(found);
     }
     let own_frame = Placement::identity();
     let composed = matches!(a.core(), Core::Compound(_)) || matches!(b.core(), Core::Compound(_));

@@ -44,6 +44,16 @@ class Entry:
         return self.contender.name == OURS
 
     @property
+    def is_absolute(self):
+        """Of ours: whether its tolerance is a length."""
+        return self.config.split("/")[0].endswith("m")
+
+    @property
+    def tolerance(self):
+        """Of ours: relative, or metres."""
+        return float(self.config.split("/")[0].removesuffix("m"))
+
+    @property
     def error99(self):
         return percentile99(self.error)
 
@@ -156,10 +166,16 @@ def trial(row, pair_set, contenders, count):
 
 
 def matching(own, peer):
-    """Ours at the loosest tolerance that is no less exact than the peer; at the tightest where none is."""
-    loosest_first = sorted(own, key=lambda entry: -float(entry.config.split("/")[0]))
-    exact = (entry for entry in loosest_first if no_worse(entry.error99, peer.error99))
-    return next(exact, loosest_first[-1])
+    """Ours at the loosest tolerance that is no less exact than the peer, the relative or the absolute one, whichever is
+    faster in the trial; at the tightest relative one where none is."""
+    tightest = min((entry for entry in own if not entry.is_absolute), key=lambda entry: entry.tolerance)
+    found = []
+    for is_absolute in (False, True):
+        loosest_first = sorted(
+            (entry for entry in own if entry.is_absolute == is_absolute), key=lambda entry: -entry.tolerance
+        )
+        found += [entry for entry in loosest_first if no_worse(entry.error99, peer.error99)][:1]
+    return min(found, key=lambda entry: entry.trial, default=tightest)
 
 
 def unique(entries):

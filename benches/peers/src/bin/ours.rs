@@ -1,6 +1,7 @@
 //! `clearance` as a contender, through the door of its narrow phase. A configuration is words joined by "/":
 //!
-//!   1e-3 .. 1e-12     the relative tolerance
+//!   1e-1 .. 1e-12     the relative tolerance
+//!   1e-2m .. 1e-6m    the absolute tolerance, metres (and 1e-12 relative)
 //!   cold, warm        each pair anew; tracks: from the cache that the step before left
 //!   gjk, sat, ...     a solver of the ladder by its name; the default without one
 
@@ -16,7 +17,13 @@ use clearance::narrow_phase::{
 use clearance_peers::contender::{Answer, Contender, Pass, serve};
 use clearance_peers::pairs::{Kind, PairSet, Pairs, PoseRecord, ShapeRecord};
 
-const TOLERANCES: [&str; 10] = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11", "1e-12"];
+const RELATIVE: [&str; 16] = [
+    "1e-1", "3e-2", "1e-2", "3e-3", "1e-3", "3e-4", "1e-4", "3e-5", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10",
+    "1e-11", "1e-12",
+];
+
+/// Peers' tolerances are lengths: one of ours that is, too, does no more work on what is near than on what is far.
+const ABSOLUTE: [&str; 9] = ["1e-2m", "3e-3m", "1e-3m", "3e-4m", "1e-4m", "3e-5m", "1e-5m", "3e-6m", "1e-6m"];
 
 struct Ours<'a> {
     pairs: &'a Pairs,
@@ -39,19 +46,19 @@ impl Contender for Ours<'_> {
         }
         let tolerances = match operation {
             // A verdict is reached or not, whatever the tolerance.
-            "collide" => TOLERANCES.iter().step_by(TOLERANCES.len()),
-            // On triangles GJK ends on a feature, whatever the tolerance.
-            _ if set.name.starts_with("mesh") => TOLERANCES.iter().step_by(3),
-            _ => TOLERANCES.iter().step_by(1),
+            "collide" => vec!["1e-9"],
+            // On triangles the search ends on a feature, whatever the tolerance.
+            _ if set.name.starts_with("mesh") => vec!["1e-3", "1e-6", "1e-9", "1e-12"],
+            _ => [&RELATIVE[..], &ABSOLUTE[..]].concat(),
         };
-        tolerances.map(|tolerance| format!("{tolerance}/cold")).collect()
+        tolerances.into_iter().map(|tolerance| format!("{tolerance}/cold")).collect()
     }
 
     fn ask(&mut self, set: &PairSet, operation: &str, config: &str, pass: &mut Pass) {
         let words = config.split('/');
-        let tolerance = words.clone().find_map(|word| word.parse().ok()).expect("a configuration has a tolerance");
+        let accuracy = words.clone().find_map(accuracy).expect("a configuration has a tolerance");
         let solver = words.clone().find_map(Solver::named).unwrap_or_default();
-        let goal = Goal { depth: depth(operation), accuracy: relative(tolerance), solver, ..Goal::penetration() };
+        let goal = Goal { depth: depth(operation), accuracy, solver, ..Goal::penetration() };
         let pairs: Vec<(&Shape, &Shape, Placement, Placement)> = (self.pairs.of(set).iter())
             .map(|pair| (&self.shapes[pair.a], &self.shapes[pair.b], placement(&pair.at_a), placement(&pair.at_b)))
             .collect();
@@ -88,8 +95,11 @@ fn depth(operation: &str) -> Depth {
     }
 }
 
-fn relative(tolerance: f64) -> Accuracy {
-    Accuracy { relative: tolerance, ..Accuracy::default() }
+fn accuracy(word: &str) -> Option<Accuracy> {
+    Some(match word.strip_suffix('m') {
+        Some(length) => Accuracy { absolute: length.parse().ok()?, relative: 1e-12 },
+        None => Accuracy { relative: word.parse().ok()?, ..Accuracy::default() },
+    })
 }
 
 fn distance(found: Result<Separation, NoSeparation>) -> Answer {
