@@ -133,7 +133,7 @@ fn search(best: &mut Gjk, difference: &mut Difference, steering: &mut impl Steer
         let is_old = best.simplex.has(vertex.w);
         let step = if is_old { Step::NoNearer } else { best.simplex.add(&vertex, difference.extent + error) };
         match step {
-            Step::Reduced => best.upper = best.simplex.x.norm() + error,
+            Step::Reduced => best.upper = best.simplex.square.sqrt() + error,
             // What a steered direction found was not what lies farthest against x: that is no reason to end.
             Step::NoNearer if steering.gave_up() => (),
             Step::NoNearer => {

@@ -42,18 +42,23 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
     if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b)
         && difference.memory.len == 0
     {
-        // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's.
+        // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's, which gets
+        // there sooner from the centres than from that face.
         let (a, b) = (*a, *b);
         let is_verdict = target.goal.depth == Depth::Verdict;
         let faces = Faces::of(a, b, difference.b_in_a);
         if is_verdict && let Some(answer) = parted(&faces, difference, target) {
             return answer;
         }
-        if (is_verdict || faces.value <= 0.0)
-            && let Sat::Answer(answer) = boxes(a, b, faces, difference, target, cost)
-        {
-            return answer;
-        }
+        let start = if is_verdict || faces.value <= 0.0 {
+            match boxes(a, b, faces, difference, target, cost) {
+                Sat::Answer(answer) => return answer,
+                Sat::Start(direction) => direction,
+            }
+        } else {
+            difference.centers()
+        };
+        return by_gjk(difference, start, Plain, target, cost);
     }
     // A search that starts where the last one ended has no long way to save rounds on.
     let momentum = if difference.memory.len == 0 { momentum_that_suits(difference.a, difference.b) } else { None };

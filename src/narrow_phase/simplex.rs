@@ -27,6 +27,8 @@ pub(super) struct Simplex {
     span: Vec3,
     /// The nearest point; metres.
     pub x: Vec3,
+    /// Its square.
+    pub square: f64,
 }
 
 /// Where a vertex comes from: see [`Vertex`].
@@ -61,7 +63,15 @@ impl Simplex {
     #[inline]
     pub fn point(v: Vertex) -> Self {
         let from = Origin { on_a: v.on_a, corners: v.corners };
-        Self { w: [v.w; 4], from: [from; 4], weights: [1.0, 0.0, 0.0], len: 1, span: ORIGIN, x: v.w }
+        Self {
+            w: [v.w; 4],
+            from: [from; 4],
+            weights: [1.0, 0.0, 0.0],
+            len: 1,
+            span: ORIGIN,
+            x: v.w,
+            square: v.w.norm_squared(),
+        }
     }
 
     /// The vertices of the feature that holds the nearest point.
@@ -118,7 +128,7 @@ impl Simplex {
                 let ([a, b, c, _], normal) = (&self.w, self.span);
                 // Turn of the normal is about u S |e| / |ac x bc|, turn of x is about u S / |x|.
                 let edge = (a - c).norm_squared().max((b - c).norm_squared());
-                if normal.norm_squared() <= self.x.norm_squared() * edge {
+                if normal.norm_squared() <= self.square * edge {
                     return self.x;
                 }
                 if normal.dot(c) < 0.0 { opposite(normal) } else { normal }
@@ -140,21 +150,24 @@ impl Simplex {
         self.from[old] = Origin { on_a: vertex.on_a, corners: vertex.corners };
         let w = &self.w;
         let guess = match count {
-            2 => Guess::Feature(edge(w, 0, 1).unwrap_or_else(|| corner(w, 1))),
-            3 => Guess::Feature(of_three(w)),
-            _ => of_four(w, self.span, extent),
+            2 => edge(w, 0, 1).unwrap_or_else(|| corner(w, 1)),
+            3 => of_three(w),
+            _ => of_four(w),
         };
         let slack = 64.0 * UNIT_ROUNDOFF * extent;
-        let place = match guess {
-            Guess::Feature(place) if is_nearest(&place, w, count, slack) => place,
-            Guess::Inside => return Step::Enclosed,
-            _ => match exhaustive(&w[..count]) {
+        let place = if is_nearest(&guess, w, count, slack) {
+            guess
+        } else if count == 4 && is_clearly_enclosed(w, extent) {
+            return Step::Enclosed;
+        } else {
+            match exhaustive(&w[..count]) {
                 Some(place) => place,
                 None => return Step::Enclosed,
-            },
+            }
         };
         // Comparison order matters: a NaN is no progress.
-        if !(place.x.norm_squared() < self.x.norm_squared()) {
+        let square = place.x.norm_squared();
+        if !(square < self.square) {
             return Step::NoNearer;
         }
         for i in 0..place.len {
@@ -164,7 +177,8 @@ impl Simplex {
                 (self.w[i], self.from[i]) = (self.w[slot], self.from[slot]);
             }
         }
-        (self.weights, self.len, self.span, self.x) = (place.weights, place.len, place.span, place.x);
+        (self.weights, self.len, self.span) = (place.weights, place.len, place.span);
+        (self.x, self.square) = (place.x, square);
         Step::Reduced
     }
 
@@ -194,19 +208,9 @@ pub(super) fn nearest_of_triangle([a, b, c]: [Vertex; 3], extent: f64) -> Vertex
     simplex.w[1] = b.w;
     simplex.from[1] = Origin { on_a: b.on_a, corners: b.corners };
     simplex.len = 2;
-    simplex.x = Vec3::repeat(f64::INFINITY); // Any point is nearer.
+    simplex.square = f64::INFINITY; // Any point is nearer.
     simplex.add(&c, extent);
     simplex.nearest()
-}
-
-/// What a look at the signs tells.
-enum Guess {
-    /// Probably here.
-    Feature(Place),
-    /// The origin is strictly inside: certain.
-    Inside,
-    /// The signs are too close to call.
-    Unclear,
 }
 
 /// A volume p . (q x r) of vertices no farther than S from the origin is off by less than this times S^3: each of the six
@@ -285,31 +289,65 @@ fn nearer(one: Option<Place>, other: Option<Place>) -> Option<Place> {
     }
 }
 
-/// A guess for an old face and a new vertex: on one of the faces at the new vertex that the origin is beyond; inside when it
-/// is clearly beyond none of them, nor beyond the old one. `normal`: (a - c) x (b - c) of the old face (a, b, c).
-#[inline]
-fn of_four(w: &[Vec3; 4], normal: Vec3, extent: f64) -> Guess {
+/// A face at the newest vertex, d, as seen from the origin.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// The product of two edges.
+    normal: Vec3,
+    /// Its square, and that of its product with d: their quotient is the square of the plane's distance.
+    whole: f64,
+    height: f64,
+    /// Shares of the old corners in the origin's foot, times `whole`.
+    shares: [f64; 2],
+    is_inside: bool,
+}
+
+/// The face (p, q, d): `p_d` and `q_d` lead there from d, and `p_x`, `q_x` are their products with d.
+#[inline(always)]
+fn seen(p_d: Vec3, q_d: Vec3, p_x: Vec3, q_x: Vec3, d: Vec3) -> Seen {
+    let normal = p_d.cross(&q_d);
+    let (whole, height) = (normal.norm_squared(), normal.dot(&d));
+    let (of_p, of_q) = (normal.dot(&q_x), -normal.dot(&p_x));
+    // Comparison order matters: a face without area has shares that are not numbers.
+    let is_inside = (of_p > 0.0) & (of_q > 0.0) & (whole - of_p - of_q > 0.0);
+    Seen { normal, whole, height: height * height, shares: [of_p, of_q], is_inside }
+}
+
+/// A guess for an old face and a new vertex: on the nearest of the faces at the new vertex that have the origin's foot inside.
+/// No branches but the last, for which face it is nobody could foretell.
+#[inline(always)]
+fn of_four(w: &[Vec3; 4]) -> Place {
     let [a, b, c, d] = *w;
-    let (ab, bc, ca) = (a.cross(&b), b.cross(&c), c.cross(&a));
-    // Six times the volumes with the origin in the place of the third old vertex: of the sign opposite to that of the whole
-    // when it is on the inner side.
-    let (of_ab, of_bc, of_ca) = (d.dot(&ab), d.dot(&bc), d.dot(&ca));
-    let whole = normal.dot(&(c - d));
-    let is_beyond = |volume: f64| !(volume * whole < 0.0);
-    if !(is_beyond(of_ab) || is_beyond(of_bc) || is_beyond(of_ca)) {
-        let of_old = a.dot(&bc) * whole.signum();
-        let least = of_old.min(of_ab.abs()).min(of_bc.abs()).min(of_ca.abs());
-        return if least > DOUBT * extent * extent * extent { Guess::Inside } else { Guess::Unclear };
+    let (a_d, b_d, c_d) = (a - d, b - d, c - d);
+    let (a_x, b_x, c_x) = (a_d.cross(&d), b_d.cross(&d), c_d.cross(&d));
+    let faces = [seen(a_d, b_d, a_x, b_x, d), seen(b_d, c_d, b_x, c_x, d), seen(a_d, c_d, a_x, c_x, d)];
+    let mut which = 0;
+    for i in 1..3 {
+        let [best, one] = [&faces[which], &faces[i]];
+        let is_nearer = !best.is_inside | (one.height * best.whole < best.height * one.whole);
+        which = if one.is_inside & is_nearer { i } else { which };
     }
-    let mut best = if is_beyond(of_ab) { face(w, 0, 1, 3) } else { None };
-    if is_beyond(of_bc) {
-        best = nearer(best, face(w, 1, 2, 3));
+    let Seen { normal, whole, shares: [of_p, of_q], is_inside, .. } = faces[which];
+    if !is_inside {
+        let edges = nearer(nearer(edge(w, 0, 3), edge(w, 1, 3)), edge(w, 2, 3));
+        return edges.unwrap_or_else(|| corner(w, 3));
     }
-    if is_beyond(of_ca) {
-        best = nearer(best, face(w, 0, 2, 3));
-    }
-    let edges = || nearer(nearer(edge(w, 0, 3), edge(w, 1, 3)), edge(w, 2, 3));
-    Guess::Feature(best.or_else(edges).unwrap_or_else(|| corner(w, 3)))
+    let (p, q) = [(0, 1), (1, 2), (0, 2)][which];
+    let share = 1.0 / whole;
+    let (of_p, of_q) = (of_p * share, of_q * share);
+    let x = d + (w[p] - d) * of_p + (w[q] - d) * of_q;
+    Place { slots: [p, q, 3], weights: [of_p, of_q, 1.0 - of_p - of_q], len: 3, span: normal, x }
+}
+
+/// Whether the origin is inside of the tetrahedron, by signs that are beyond doubt.
+#[inline]
+fn is_clearly_enclosed(w: &[Vec3; 4], extent: f64) -> bool {
+    let [a, b, c, d] = w;
+    let (ab, bc, ca) = (a.cross(b), b.cross(c), c.cross(a));
+    // Six times the volumes with the origin in the place of a vertex.
+    let volumes = [a.dot(&bc), -d.dot(&ab), -d.dot(&bc), -d.dot(&ca)];
+    let doubt = DOUBT * extent * extent * extent;
+    volumes.iter().all(|volume| *volume > doubt) || volumes.iter().all(|volume| *volume < -doubt)
 }
 
 /// The nearest of all features; none when four vertices strictly enclose the origin, by an exact test.
@@ -375,7 +413,7 @@ mod tests {
             3 => (simplex.w[0] - simplex.w[2]).cross(&(simplex.w[1] - simplex.w[2])),
             _ => simplex.w[1] - simplex.w[0],
         };
-        simplex.x = Vec3::repeat(f64::INFINITY);
+        simplex.square = f64::INFINITY;
         (simplex.add(&vertices[vertices.len() - 1], 4.0) == Step::Reduced).then_some(simplex)
     }
 
