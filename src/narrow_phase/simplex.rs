@@ -3,7 +3,8 @@
 //! The nearest point x of a set of vertices is known when it is seen: no vertex v has `v . x < x . x` (the condition of
 //! Karush, Kuhn and Tucker for min |x|^2). So the step guesses the feature that holds it (a face of which the origin's
 //! foot is inside, an edge, the newest vertex), nearly always rightly, and checks the guess by that condition. When no
-//! guess passes, which happens with simplices as flat as rounding, every feature is looked at and the nearest one taken.
+//! guess passes, which happens with simplices as flat as rounding, every feature is looked at and the nearest one taken. Which
+//! of the faces at a new vertex it is cannot be foretold, so they are compared without branches.
 //!
 //! Sub-areas and lengths decide by their signs, as in the signed volumes of Montanari, Petrinic and Barbieri, ACM ToG 2017.
 
