@@ -20,7 +20,7 @@ use super::momentum::Steering;
 use super::outcome::Cost;
 use super::pair_cache::rebuilt;
 use super::simplex::{Simplex, Step};
-use super::support::{unit, with_length};
+use super::support::with_length;
 use crate::geometry::Vec3;
 
 /// Rounds at most. Smooth pairs need some 50 for a relative width of 1e-9; the most seen in the test corpus is below
@@ -75,23 +75,23 @@ pub(super) fn gjk(
 #[inline]
 pub(super) fn first(difference: &mut Difference, start: Vec3, target: &Target, cost: &mut Cost) -> Gjk {
     let error = difference.error;
-    let direction = unit(start).unwrap_or_else(Vec3::x);
+    let (toward, length) = with_length(start).unwrap_or((Vec3::new(1.0, 0.0, 0.0), 1.0));
     // To be told apart again a pair needs no more than the direction that told it last time.
     let is_axis_enough = target.goal.depth == Depth::Verdict && difference.memory.len < 4;
     if difference.memory.len > 0
         && !is_axis_enough
         && let Some((simplex, encloses)) = rebuilt(&difference.remembered(), difference.extent + error)
     {
-        let upper = simplex.x.norm() + error;
+        let upper = simplex.square.sqrt() + error;
         let end = if encloses { End::Enclosed } else { End::Limit };
         // Not asked about any direction yet; but no point of C is farther from the origin than S, so no m(n) is below -S.
         let lower = -2.0 * difference.extent - error;
-        return Gjk { lower, direction, simplex, upper, end };
+        return Gjk { lower, direction: toward / length, simplex, upper, end };
     }
-    let first = difference.lowest(direction);
+    let first = difference.lowest(toward);
     cost.supports += 1;
-    let (lower, upper) = (direction.dot(&first.w) - error, first.w.norm() + error);
-    Gjk { lower, direction, simplex: Simplex::point(first), upper, end: End::Limit }
+    let (lower, simplex) = (toward.dot(&first.w) / length - error, Simplex::point(first));
+    Gjk { lower, direction: toward / length, upper: simplex.square.sqrt() + error, simplex, end: End::Limit }
 }
 
 #[inline]

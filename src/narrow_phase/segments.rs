@@ -12,7 +12,7 @@ use super::goal::Goal;
 use super::outcome::{Cost, Separation, Termination};
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
-use crate::geometry::vector::ORIGIN;
+use crate::geometry::vector::{ORIGIN, sum_of_sizes};
 use crate::geometry::{Core, Vec3, length};
 
 /// A segment in its place: its middle as an offset from the body's origin, and half its length; metres, common axes.
@@ -80,8 +80,8 @@ impl<'a> Segments<'a> {
         }
         let distance = square.sqrt();
         // Least of n . (b - a): each segment sticks out by |n . h|. Divided last, so that the root is worked out meanwhile.
-        let least = from_a_to_b.dot(&between) - from_a_to_b.dot(&one.half).abs() - from_a_to_b.dot(&other.half).abs();
-        let least = least / distance;
+        let product = from_a_to_b.dot(&between) - from_a_to_b.dot(&one.half).abs() - from_a_to_b.dot(&other.half).abs();
+        let least = product / distance;
         let normal = from_a_to_b / distance;
         let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
         let target = Target::new(goal, a.swept_radius + b.swept_radius, 1.0);
@@ -94,7 +94,9 @@ impl<'a> Segments<'a> {
         }
         let signed_distance = (distance - target.radii).clamp(bracket.lower, bracket.upper);
         let point_on_a = a.at.translation + (one.middle + one.half * s + normal * a.swept_radius);
-        let gap = witness::from_nearest(lower, upper);
+        // The root of U^2 - L^2 for U = d + e and L = p / d - e is no more than this, which does not wait for d.
+        let gap = (2.0 * (square - product).max(0.0) + 4.0 * error * sum_of_sizes(from_a_to_b)).sqrt();
+        let gap = if lower > 0.0 { gap } else { 0.0 };
         let normal_error = witness::normal_error(lower, gap);
         let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
         let point_error = gap + 2.0 * error + target.radii * normal_error.min(2.0) + rounding;

@@ -14,7 +14,8 @@ use super::epa::Epa;
 use super::line_of_centers;
 use super::minkowski::{Difference, Vertex};
 use super::outcome::{Cost, Termination};
-use super::support::unit;
+use super::support::with_length;
+use crate::geometry::vector::ORIGIN;
 use crate::geometry::{Core, Placement, Vec3};
 
 /// Steps at most. Ordinary pairs need four to six.
@@ -34,13 +35,15 @@ impl<'a> Smooth<'a> {
         (is_smooth(a) && is_smooth(b)).then_some(Self { a, b, b_in_a })
     }
 
-    /// H u for a tangent u, at the direction towards B, n, whose vertex is `at`. Frame of A.
-    fn curvature(&self, n: Vec3, at: &Vertex, u: Vec3) -> Vec3 {
-        let of_a = curvature(self.a, n, at.on_a, u);
-        let on_b = self.b_in_a.direction_into(at.on_a - at.w - self.b_in_a.translation);
-        let (n_in_b, u_in_b) = (self.b_in_a.direction_into(n), self.b_in_a.direction_into(u));
-        // B is met from the other side: its normal is -n, its Hessian even.
-        of_a + self.b_in_a.direction(curvature(self.b, n_in_b * -1.0, on_b, u_in_b))
+    /// The forms (u . H u, u . H v, v . H v) of the sum of both Hessians for tangents u and v at the vertex that lies farthest
+    /// against the unit `direction`. Frame of A.
+    #[inline]
+    fn forms(&self, direction: Vec3, at: &Vertex, u: Vec3, v: Vec3) -> [f64; 3] {
+        let on_b = at.on_a - at.w - self.b_in_a.translation;
+        let of_a = forms(self.a, [u, v], [at.on_a.dot(&u), at.on_a.dot(&v)], -direction.dot(&at.on_a));
+        let in_b = [self.b_in_a.direction_into(u), self.b_in_a.direction_into(v)];
+        let of_b = forms(self.b, in_b, [on_b.dot(&u), on_b.dot(&v)], direction.dot(&on_b));
+        [of_a[0] + of_b[0], of_a[1] + of_b[1], of_a[2] + of_b[2]]
     }
 }
 
@@ -62,22 +65,37 @@ fn is_smooth(core: &Core) -> bool {
     }
 }
 
-/// Hessian of the support function h(n) = |A n|, A = diag(radii), applied to u: (A^2 u - p (p . u)) / h, with the support
-/// point p = A^2 n / h.
-fn curvature(core: &Core, n: Vec3, p: Vec3, u: Vec3) -> Vec3 {
-    let Core::Ellipsoid { radii } = core else { return Vec3::zeros() };
-    (radii.component_mul(&radii.component_mul(&u)) - p * p.dot(&u)) / n.dot(&p)
+/// The Hessian of the support function h(n) = |A n|, A = diag(radii), is (A^2 - p p^T) / h with the support point p = A^2 n / h: its
+/// forms for two tangents in the core's frame, given their products with p, and h.
+#[inline]
+fn forms(core: &Core, [u, v]: [Vec3; 2], [pu, pv]: [f64; 2], h: f64) -> [f64; 3] {
+    let Core::Ellipsoid { radii } = core else { return [0.0; 3] };
+    let (au, av) = (radii.component_mul(&u), radii.component_mul(&v));
+    let share = 1.0 / h;
+    [(au.dot(&au) - pu * pu) * share, (au.dot(&av) - pu * pv) * share, (av.dot(&av) - pv * pv) * share]
+}
+
+/// Two unit vectors that are perpendicular to a unit vector and to one another: without a branch or a root, by Duff and others,
+/// "Building an Orthonormal Basis, Revisited", JCGT 2017.
+#[inline]
+fn tangents(n: Vec3) -> [Vec3; 2] {
+    let sign = 1.0_f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    [Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), Vec3::new(b, sign + n.y * n.y * a, -n.y)]
 }
 
 /// The bracket, when the steps reach one that is as narrow as asked or decides; none otherwise.
 pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target, cost: &mut Cost) -> Option<Epa> {
     let error = difference.error;
     // From the origin to C = A - B: the opposite of n.
-    let mut direction = unit(difference.start())?;
+    let mut toward = difference.start();
     // Where the widest gap so far was met, and the step that was taken from there.
-    let (mut widest, mut base, mut forward) = (f64::NEG_INFINITY, direction, Vec3::zeros());
+    let (mut widest, mut base, mut forward) = (f64::NEG_INFINITY, ORIGIN, ORIGIN);
     for _ in 0..MAX_STEPS {
-        let vertex = difference.lowest(direction);
+        let (along, length) = with_length(toward)?;
+        let vertex = difference.lowest(along);
+        let direction = along / length;
         cost.supports += 1;
         cost.gjk_iterations += 1;
         let gap = direction.dot(&vertex.w);
@@ -106,18 +124,15 @@ pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target
             (widest, base) = (gap, direction);
             forward = step(pair, direction, &vertex, gap)?;
         }
-        direction = unit(base + forward)?;
+        toward = base + forward;
     }
     None
 }
 
 /// One Newton step: the tangent d with (H + p I) d = the part of w across the direction.
 fn step(pair: &Smooth, direction: Vec3, vertex: &Vertex, gap: f64) -> Option<Vec3> {
-    let n = direction * -1.0;
-    let u = unit(n.cross(&Vec3::ith(n.iamin(), 1.0)))?;
-    let v = n.cross(&u);
-    let (hu, hv) = (pair.curvature(n, vertex, u), pair.curvature(n, vertex, v));
-    let (uu, uv, vv) = (u.dot(&hu), u.dot(&hv), v.dot(&hv));
+    let [u, v] = tangents(direction);
+    let [uu, uv, vv] = pair.forms(direction, vertex, u, v);
     // Before there is a gap the matrix may not be definite with p; without it, it is, and the step shorter.
     let with = |p: f64| (uu + p, vv + p, (uu + p) * (vv + p) - uv * uv);
     let (uu, vv, determinant) = match with(gap) {
