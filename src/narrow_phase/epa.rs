@@ -111,27 +111,30 @@ fn expand(
         {
             best.upper = best.upper.min(error - ball);
         }
-        let outward = polytope.face(face).normal;
+        let (outward, length) = (polytope.face(face).outward, polytope.face(face).length);
         let vertex = lowest(difference, opposite(outward));
+        let reach = outward.dot(&vertex.w) / length;
         cost.supports += 1;
         cost.epa_iterations += 1;
-        if raise_lower(&mut best, opposite(outward), -outward.dot(&vertex.w), difference) {
+        if raise_lower(&mut best, opposite(outward) / length, -reach, difference) {
             deepest = Some(polytope.corners(face));
             if !encloses {
                 best.upper =
                     best.upper.min(nearest_of_triangle(polytope.corners(face), difference.extent).w.norm() + error);
             }
         }
-        let bracket = target.bracket(best.lower, best.upper);
-        if target.is_met(&bracket) || target.is_decided(&bracket) {
-            best.termination = if target.is_met(&bracket) { Termination::Converged } else { Termination::Decided };
-            break;
+        if target.may_be_enough(best.lower, best.upper) {
+            let bracket = target.bracket(best.lower, best.upper);
+            if target.is_met(&bracket) || target.is_decided(&bracket) {
+                best.termination = if target.is_met(&bracket) { Termination::Converged } else { Termination::Decided };
+                break;
+            }
         }
         if target.must_stop() {
             best.termination = Termination::TimeLimit;
             break;
         }
-        let gain = outward.dot(&vertex.w) - offset;
+        let gain = reach - offset;
         if gain <= 0.25 * error || !polytope.is_outside(face, &vertex) {
             if local.is_some() {
                 follow = false;

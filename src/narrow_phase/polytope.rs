@@ -11,7 +11,7 @@ use arrayvec::ArrayVec;
 
 use super::minkowski::Vertex;
 use super::simplex::orientation;
-use super::support::unit;
+use super::support::with_length;
 use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::vector::ORIGIN;
@@ -21,6 +21,9 @@ const VERTICES: usize = 520;
 
 /// Faces at most: a closed surface of triangles has 2 V - 4.
 const FACES: usize = 2 * VERTICES;
+
+/// Offsets that are compared side by side.
+const LANES: usize = 8;
 
 /// The index after each of three, round and round.
 const NEXT: [usize; 3] = [1, 2, 0];
@@ -32,9 +35,10 @@ pub(super) struct Face {
     corners: [u16; 3],
     /// Face across the edge from corner i to corner i + 1.
     adjacent: [u16; 3],
-    /// Outward unit normal, within rounding.
-    pub normal: Vec3,
-    /// No point of the triangle is nearer the origin plane across `normal` than this: proved, whatever the normal's
+    /// Outward, perpendicular to the face within rounding, and its length.
+    pub outward: Vec3,
+    pub length: f64,
+    /// No point of the triangle is nearer the origin plane across `outward` than this: proved, whatever that direction's
     /// error is. Negative when the origin is outside. Metres.
     pub offset: f64,
     /// Product of two edges: perpendicular to the face, outward.
@@ -109,14 +113,23 @@ impl Polytope {
 
     /// Takes out of the queue and returns the face of least offset.
     pub fn nearest_face(&mut self) -> Option<usize> {
-        let mut least = f64::INFINITY;
-        for &offset in &self.queue {
-            least = if offset < least { offset } else { least };
+        // Lane by lane, so that no minimum waits for the one before.
+        let (blocks, rest) = self.queue.as_chunks::<LANES>();
+        let mut of_lanes = [f64::INFINITY; LANES];
+        let lesser = |a: f64, b: f64| if b < a { b } else { a };
+        for block in blocks {
+            for lane in 0..LANES {
+                of_lanes[lane] = lesser(of_lanes[lane], block[lane]);
+            }
         }
+        let least = of_lanes.into_iter().chain(rest.iter().copied()).fold(f64::INFINITY, lesser);
         if least == f64::INFINITY {
             return None;
         }
-        let face = self.queue.iter().position(|&offset| offset == least)?;
+        let in_blocks =
+            blocks.iter().position(|block| block.iter().fold(false, |found, &offset| found | (offset == least)));
+        let from = in_blocks.unwrap_or(blocks.len()) * LANES;
+        let face = from + self.queue[from..].iter().position(|&offset| offset == least)?;
         self.queue[face] = f64::INFINITY;
         Some(face)
     }
@@ -229,12 +242,16 @@ impl Polytope {
         let at = |i: usize| self.vertices[usize::from(corners[i])].w;
         let (a, b, c) = (at(0), at(1), at(2));
         let product = (b - a).cross(&(c - a));
-        let (normal, offset) = plane(product, a, b, c, self.slack);
+        // A needle whose product vanishes in f64: any direction gives a valid offset.
+        let (outward, length) =
+            with_length(product).or_else(|| with_length(a + b + c)).unwrap_or((Vec3::new(1.0, 0.0, 0.0), 1.0));
+        // The least first, so that the root is worked out beside.
+        let offset = outward.dot(&a).min(outward.dot(&b)).min(outward.dot(&c)) / length - self.slack;
         let side_of_origin = product.dot(&a);
         let holds_origin =
             if side_of_origin.abs() > self.doubt { side_of_origin > 0.0 } else { orientation(a, b, c, ORIGIN) > 0.0 };
         self.not_holding += usize::from(!holds_origin);
-        let face = Face { corners, adjacent, normal, offset, product, holds_origin, alive: true };
+        let face = Face { corners, adjacent, outward, length, offset, product, holds_origin, alive: true };
         if let Some(slot) = self.free.pop() {
             self.faces[usize::from(slot)] = face;
             self.queue[usize::from(slot)] = offset;
@@ -256,18 +273,6 @@ impl Polytope {
         }
         orientation(corner(0), corner(1), corner(2), point)
     }
-}
-
-/// Unit normal of a triangle from the product of two of its edges, and an offset along it that none of its points is
-/// below, proved. `slack`: rounding of the offset.
-#[inline(always)]
-fn plane(product: Vec3, a: Vec3, b: Vec3, c: Vec3, slack: f64) -> (Vec3, f64) {
-    // A needle whose product vanishes in f64: any direction gives a valid offset.
-    let normal = match unit(product) {
-        Some(normal) => normal,
-        None => unit(a + b + c).unwrap_or_else(Vec3::x),
-    };
-    (normal, normal.dot(&a).min(normal.dot(&b)).min(normal.dot(&c)) - slack)
 }
 
 #[cfg(test)]
