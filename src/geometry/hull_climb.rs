@@ -22,8 +22,8 @@ pub(super) struct StartTable {
     vertices: Vec<u32>,
 }
 
-/// Cells along an edge of the cube. The middle of a cell is within 12 degrees of any direction in it.
-const CELLS: usize = 6;
+/// Cells along an edge of the cube. The middle of a cell is within 9 degrees of any direction in it.
+const CELLS: usize = 9;
 
 /// Vertices that are flooded at most, before all points are looked at instead: faces with more corners are rare.
 const FLOODED: usize = 32;

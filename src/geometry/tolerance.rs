@@ -4,6 +4,10 @@
 /// Unit roundoff of `f64`: the largest relative error of one correctly rounded operation.
 pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
+/// Whether answers are proved. A build with `CLEARANCE_UNPROVED` set goes without errors, outward rounding and higher precision:
+/// its brackets prove nothing. It exists for `benches/instructions`, which tells by it what the proof costs.
+pub const PROVED: bool = option_env!("CLEARANCE_UNPROVED").is_none();
+
 /// Error of one support value or one Minkowski vertex, in units of [`UNIT_ROUNDOFF`] times the extent
 /// S = r_A + r_B + |t|. `docs/derivations/bracket.md` adds up the pose (matrix from quaternion, product of two matrices,
 /// rotated difference of positions), the support point and the dot product, and arrives at it. Smaller could let a

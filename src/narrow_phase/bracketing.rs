@@ -1,6 +1,6 @@
 //! From bounds on two cores to a bracket on the shapes, and whether that is enough.
 
-use crate::geometry::tolerance::UNIT_ROUNDOFF;
+use crate::geometry::tolerance::{PROVED, UNIT_ROUNDOFF};
 
 use super::goal::{Depth, Goal};
 use super::outcome::Bracket;
@@ -45,6 +45,10 @@ impl<'a> Target<'a> {
     /// difference and the product round once each; four units in the last place cover them.
     #[inline]
     pub fn bracket(&self, lower: f64, upper: f64) -> Bracket {
+        if !PROVED {
+            let on_shapes = |bound: f64| bound * self.unscale - self.radii;
+            return Bracket { lower: on_shapes(lower), upper: on_shapes(upper) };
+        }
         let denormal = if self.scale == 1.0 { 0.0 } else { f64::MIN_POSITIVE };
         let slack = |bound: f64| 4.0 * UNIT_ROUNDOFF * (bound.abs() + self.radii) + denormal;
         let (lower, upper) = (lower * self.unscale, upper * self.unscale);

@@ -15,7 +15,7 @@ use super::solver::Solver;
 use super::support::radius;
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use super::{ladder, line_of_centers};
-use crate::geometry::tolerance::{UNIT_ROUNDOFF, UNSCALED_EXTENT};
+use crate::geometry::tolerance::{PROVED, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Vec3, length};
 
@@ -107,7 +107,7 @@ pub(super) fn by_gjk(
     cost: &mut Cost,
 ) -> Epa {
     let mut found = first(difference, start, target, cost);
-    if difference.memory.len == 0 && target.may_be_decided_from_above(found.lower) {
+    if difference.memory.is_empty() && target.may_be_decided_from_above(found.lower) {
         found.upper = found.upper.min(line_of_centers::upper_bound(difference));
     }
     gjk(&mut found, difference, steering, target, cost);
@@ -117,13 +117,15 @@ pub(super) fn by_gjk(
     match found.end {
         End::Converged => stopped(Termination::Converged),
         End::Decided => stopped(Termination::Decided),
-        End::Stalled if at_floor => stopped(Termination::RoundingFloor),
+        End::Stalled if at_floor || !PROVED => stopped(Termination::RoundingFloor),
         End::Stalled => epa(difference, &found.simplex.vertices(), stopped(Termination::IterationLimit), target, cost),
         End::Limit => stopped(Termination::IterationLimit),
         End::OutOfTime => stopped(Termination::TimeLimit),
         End::Enclosed => {
             // The ball around the origin that no face of the tetrahedron cuts.
-            let upper = difference.error - found.simplex.inner_ball(difference.extent + difference.error).max(0.0);
+            let ball =
+                if PROVED { found.simplex.inner_ball(difference.extent + difference.error) } else { f64::MIN_POSITIVE };
+            let upper = difference.error - ball.max(0.0);
             let overlap = Epa { upper, ..stopped(Termination::Decided) };
             let measured = target.goal.depth == Depth::Penetration;
             if !measured && target.is_decided(&target.bracket(overlap.lower, overlap.upper)) {
@@ -159,17 +161,13 @@ pub(super) fn place(found: &Epa, bracket: Bracket, a: &Convex, target: &Target, 
         | Termination::ClosedForm
         | Termination::Exact => found.lower + error,
     };
-    let signed_distance = (of_cores * target.unscale - target.radii).clamp(bracket.lower, bracket.upper);
+    let signed_distance = (of_cores * target.unscale - target.radii).max(bracket.lower).min(bracket.upper);
     // The direction leads from the origin to C = A - B, the normal from A to B.
     let normal = a.at.direction(opposite(found.direction));
     let point_on_a = a.at.point(found.nearest.on_a * target.unscale) + normal * a.swept_radius;
     let point_on_b = point_on_a + normal * signed_distance;
-    let from_nearest = witness::from_nearest(found.lower, found.upper);
-    let normal_error = witness::normal_error(found.lower, from_nearest);
-    let distance = (signed_distance + target.radii) * target.scale;
-    let cores = witness::point_error(found, distance, from_nearest, error) * target.unscale;
-    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
-    let point_error = cores + target.radii * normal_error.min(2.0) + rounding;
+    let (normal_error, point_error) =
+        if PROVED { witness_errors(found, signed_distance, a, target, error) } else { (0.0, 0.0) };
     Separation {
         bracket,
         signed_distance,
@@ -183,6 +181,17 @@ pub(super) fn place(found: &Epa, bracket: Bracket, a: &Convex, target: &Target, 
         subshape_b: 0,
         cost,
     }
+}
+
+/// How far the normal and the witness points may be off: radians, and metres.
+#[inline(always)]
+fn witness_errors(found: &Epa, signed_distance: f64, a: &Convex, target: &Target, error: f64) -> (f64, f64) {
+    let from_nearest = witness::from_nearest(found.lower, found.upper);
+    let normal_error = witness::normal_error(found.lower, from_nearest);
+    let distance = (signed_distance + target.radii) * target.scale;
+    let cores = witness::point_error(found, distance, from_nearest, error) * target.unscale;
+    let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
+    (normal_error, cores + target.radii * normal_error.min(2.0) + rounding)
 }
 
 /// The power of two that brings the extent near 1; 1 for an extent of zero.

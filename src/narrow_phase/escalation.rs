@@ -11,12 +11,15 @@ use super::solver::Solver;
 use super::support::radius;
 use super::unbounded::{Height, Unbounded};
 use super::{double_double, exact, revolution};
-use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::tolerance::{PROVED, SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 
 /// Whether the question is open, the bracket too wide, or the exact answer asked for by name.
 #[inline]
 pub(super) fn needs_more(a: &Convex, b: &Convex, goal: &Goal, bracket: &Bracket, termination: Termination) -> bool {
-    is_open(goal, bracket, termination) || is_wide(a, b, goal, bracket, termination) || goal.solver == Solver::Exact
+    PROVED
+        && (is_open(goal, bracket, termination)
+            || is_wide(a, b, goal, bracket, termination)
+            || goal.solver == Solver::Exact)
 }
 
 /// Whether a verdict is missing that more digits could give.

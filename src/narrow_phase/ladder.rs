@@ -40,7 +40,7 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
         return found;
     }
     if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b)
-        && difference.memory.len == 0
+        && !difference.memory.was_apart()
     {
         // The axes part boxes and tell their depth, but not their distance: where a face parts them that is GJK's, which gets
         // there sooner from the centres than from that face.
@@ -61,7 +61,7 @@ fn by_default(difference: &mut Difference, target: &Target, cost: &mut Cost) -> 
         return by_gjk(difference, start, Plain, target, cost);
     }
     // A search that starts where the last one ended has no long way to save rounds on.
-    let momentum = if difference.memory.len == 0 { momentum_that_suits(difference.a, difference.b) } else { None };
+    let momentum = if difference.memory.is_empty() { momentum_that_suits(difference.a, difference.b) } else { None };
     match momentum {
         Some(solver) => {
             let centers = difference.centers();

@@ -5,7 +5,7 @@
 
 use arrayvec::ArrayVec;
 
-use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
+use crate::geometry::tolerance::{PROVED, SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::vector::{ORIGIN, is_same, opposite};
 use crate::geometry::{Core, Placement, Vec3};
 
@@ -54,7 +54,7 @@ impl<'a> Difference<'a> {
         placement_error: f64,
         memory: &'a mut PairCache,
     ) -> Self {
-        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error;
+        let error = if PROVED { SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + placement_error } else { 0.0 };
         Self { a, b, b_in_a, extent, error, hints: [NO_HINT; 2], last: ORIGIN, last_square: 0.0, memory }
     }
 

@@ -26,6 +26,18 @@ impl PairCache {
         Self { corners: [[0; 2]; 4], len: 0, direction: ORIGIN }
     }
 
+    /// Whether nothing is remembered of a simplex.
+    #[inline]
+    pub(super) fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Whether the cores were apart, or not known to meet, when a search last ended.
+    #[inline]
+    pub(super) fn was_apart(&self) -> bool {
+        (1..4).contains(&self.len)
+    }
+
     /// Notes where a search ended.
     #[inline]
     pub(super) fn note(&mut self, simplex: &Simplex, encloses: bool, direction: Vec3) {

@@ -11,7 +11,7 @@ use super::escalation;
 use super::goal::Goal;
 use super::outcome::{Cost, Separation, Termination};
 use super::witness::{self, WITNESS_ERROR_ULPS};
-use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
+use crate::geometry::tolerance::{PROVED, SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::{ORIGIN, sum_of_sizes};
 use crate::geometry::{Core, Vec3, length};
 
@@ -83,7 +83,8 @@ impl<'a> Segments<'a> {
         let product = from_a_to_b.dot(&between) - from_a_to_b.dot(&one.half).abs() - from_a_to_b.dot(&other.half).abs();
         let least = product / distance;
         let normal = from_a_to_b / distance;
-        let error = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
+        let rounding = SUPPORT_ERROR_ULPS * UNIT_ROUNDOFF * extent + a.placement_error + b.placement_error;
+        let error = if PROVED { rounding } else { 0.0 };
         let target = Target::new(goal, a.swept_radius + b.swept_radius, 1.0);
         let (lower, upper) = (least - error, distance + error);
         let bracket = target.bracket(lower, upper);
@@ -92,14 +93,15 @@ impl<'a> Segments<'a> {
         if !is_enough || escalation::is_undecided(goal, &bracket) {
             return otherwise();
         }
-        let signed_distance = (distance - target.radii).clamp(bracket.lower, bracket.upper);
+        let signed_distance = (distance - target.radii).max(bracket.lower).min(bracket.upper);
         let point_on_a = a.at.translation + (one.middle + one.half * s + normal * a.swept_radius);
         // The root of U^2 - L^2 for U = d + e and L = p / d - e is no more than this, which does not wait for d.
         let gap = (2.0 * (square - product).max(0.0) + 4.0 * error * sum_of_sizes(from_a_to_b)).sqrt();
-        let gap = if lower > 0.0 { gap } else { 0.0 };
-        let normal_error = witness::normal_error(lower, gap);
+        let gap = if PROVED && lower > 0.0 { gap } else { 0.0 };
+        let normal_error = if PROVED { witness::normal_error(lower, gap) } else { 0.0 };
         let rounding = WITNESS_ERROR_ULPS * UNIT_ROUNDOFF * (target.radii + length(a.at.translation));
-        let point_error = gap + 2.0 * error + target.radii * normal_error.min(2.0) + rounding;
+        let point_error =
+            if PROVED { gap + 2.0 * error + target.radii * normal_error.min(2.0) + rounding } else { 0.0 };
         Separation {
             bracket,
             signed_distance,
