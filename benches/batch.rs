@@ -1,6 +1,6 @@
-//! Pairs of mixed kinds asked in random order, and sorted by their kinds: what the order alone saves.
+//! Pairs of mixed kinds asked in random order, kind by kind through `separations`, and sorted before: what order saves.
 //!
-//! `taskset -c 0 cargo bench --no-default-features --bench batch`, some ten seconds. Both orders run in turn, round after round;
+//! `taskset -c 0 cargo bench --no-default-features --bench batch`, some ten seconds. All run in turn, round after round;
 //! a gain is the median of the rounds' ratios, so that a machine that slows down slows both sides.
 
 use std::array;
@@ -8,11 +8,11 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use clearance::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
-use clearance::narrow_phase::{Depth, Goal, separation};
+use clearance::narrow_phase::{Depth, Goal, PairQuestion, separation, separations};
 
 const ROUNDS: usize = 21;
 
-/// A round asks about so many pairs in each order, the smaller batch again and again.
+/// A round asks about so many pairs in each way, the smaller batch again and again.
 const PAIRS_A_ROUND: usize = 20_000;
 
 /// Numbers in 0..1 from a linear congruential generator (Knuth's MMIX constants), the same in every run.
@@ -82,20 +82,31 @@ fn pairs(count: usize, kinds: &[&str]) -> Vec<Pair> {
         .collect()
 }
 
+fn questions(pairs: &[Pair], depth: Depth) -> Vec<PairQuestion<'_>> {
+    let goal = Goal { depth, ..Goal::penetration() };
+    pairs.iter().map(|pair| PairQuestion { a: &pair.a, b: &pair.b, at_a: &pair.at_a, at_b: &pair.at_b, goal }).collect()
+}
+
 /// A sum over the answers, so that none is left away.
-fn one_by_one(pairs: &[&Pair], goal: &Goal) -> f64 {
-    let ask = |p: &Pair| separation(&p.a, &p.b, &p.at_a, &p.at_b, goal).expect("both have bounds");
-    pairs.iter().map(|pair| ask(pair).bracket.lower).sum()
+fn one_by_one(questions: &[PairQuestion]) -> f64 {
+    let ask = |q: &PairQuestion| separation(q.a, q.b, q.at_a, q.at_b, &q.goal).expect("both have bounds");
+    questions.iter().map(|question| ask(question).bracket.lower).sum()
+}
+
+fn by_kinds(questions: &[PairQuestion]) -> f64 {
+    let mut sum = 0.0;
+    separations(questions, |_, answer| sum += answer.expect("both have bounds").bracket.lower);
+    sum
 }
 
 /// Nanoseconds a pair.
-fn time(pairs: &[&Pair], goal: &Goal) -> f64 {
-    let times = PAIRS_A_ROUND.div_ceil(pairs.len());
+fn time(questions: &[PairQuestion], ask: impl Fn(&[PairQuestion]) -> f64) -> f64 {
+    let times = PAIRS_A_ROUND.div_ceil(questions.len());
     let started = Instant::now();
     for _ in 0..times {
-        black_box(one_by_one(black_box(pairs), goal));
+        black_box(ask(black_box(questions)));
     }
-    started.elapsed().as_secs_f64() * 1e9 / (times * pairs.len()) as f64
+    started.elapsed().as_secs_f64() * 1e9 / (times * questions.len()) as f64
 }
 
 fn median<const N: usize>(mut values: [f64; N]) -> f64 {
@@ -103,34 +114,35 @@ fn median<const N: usize>(mut values: [f64; N]) -> f64 {
     values[N / 2]
 }
 
-/// One line: the batch as it is, and by how much faster it is in the order of its kinds. Sorting is not timed.
-fn compare(mix: &str, memory: &str, asked: &str, pairs: &[&Pair], depth: Depth) {
-    let goal = Goal { depth, ..Goal::penetration() };
-    let mut sorted = pairs.to_vec();
-    sorted.sort_by_key(|pair| (pair.a.kind(), pair.b.kind()));
-    let rounds: [_; ROUNDS] = array::from_fn(|_| [time(pairs, &goal), time(&sorted, &goal)]);
-    let mixed = median(rounds.map(|[mixed, _]| mixed));
-    let gain = median(rounds.map(|[mixed, sorted]| mixed / sorted));
-    println!("| {mix} | {} | {memory} | {asked} | {mixed:.0} | {gain:.2} |", pairs.len());
+/// One line: the batch as it is; by how much faster `separations` is, its sorting included; and by how much faster a batch
+/// that was sorted before, whole.
+fn compare(mix: &str, memory: &str, asked: &str, questions: &[PairQuestion]) {
+    let mut sorted = questions.to_vec();
+    sorted.sort_by_key(|question| (question.a.kind(), question.b.kind()));
+    let rounds: [_; ROUNDS] =
+        array::from_fn(|_| [time(questions, one_by_one), time(questions, by_kinds), time(&sorted, one_by_one)]);
+    let mixed = median(rounds.map(|[mixed, ..]| mixed));
+    let gains = [1, 2].map(|way| median(rounds.map(|round| round[0] / round[way])));
+    println!("| {mix} | {} | {memory} | {asked} | {mixed:.0} | {:.2} | {:.2} |", questions.len(), gains[0], gains[1]);
 }
 
 fn main() {
     let few = ["sphere", "capsule", "box"];
     let many = ["sphere", "capsule", "box", "cylinder", "cone", "ellipsoid", "triangle", "hull 8", "hull 40"];
-    println!("| kinds | pairs | in memory | asked | kinds mixed, ns a pair | gain, sorted by kinds |");
-    println!("| --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| kinds | pairs | in memory | asked | kinds mixed, ns a pair | gain, `separations` | gain, sorted before |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (mix, kinds) in [("3", few.as_slice()), ("9", many.as_slice())] {
         // Fewer, asked again and again, the predictors of branches would learn by heart.
         for count in [1_000, 10_000] {
-            let stored = pairs(count, kinds);
-            let mut pairs: Vec<&Pair> = stored.iter().collect();
-            for memory in ["in order", "scattered"] {
-                if memory == "scattered" {
-                    let mut random = Random(2);
-                    (1..count).rev().for_each(|i| pairs.swap(i, random.index(i + 1)));
-                }
-                compare(mix, memory, "verdict", &pairs, Depth::Verdict);
-                compare(mix, memory, "distance", &pairs, Depth::Distance);
+            let pairs = pairs(count, kinds);
+            for (asked, depth) in [("verdict", Depth::Verdict), ("distance", Depth::Distance)] {
+                let mut questions = questions(&pairs, depth);
+                compare(mix, "in order", asked, &questions);
+                let mut random = Random(2);
+                (1..count).rev().for_each(|i| questions.swap(i, random.index(i + 1)));
+                compare(mix, "scattered", asked, &questions);
             }
         }
     }

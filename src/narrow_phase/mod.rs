@@ -4,8 +4,9 @@
 //! meshes (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
 //! closed mesh, `convex` runs the solvers on a pair of cores, `unbounded` has the formula for half-spaces and planes. Below
 //! lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a second door, for all
-//! touching triangles.
+//! touching triangles; [`separations`] is the first one for many pairs at once.
 
+mod batch;
 mod box_gaps;
 mod bracketing;
 mod convex;
@@ -49,6 +50,7 @@ mod walk;
 mod wall;
 mod witness;
 
+pub use batch::{PairQuestion, separations};
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
