@@ -81,6 +81,9 @@ fn not_negative(text: &str) -> Result<f64, String> {
 
 /// Answers every case of the input in order, each with one flushed line.
 ///
+/// Line by line, and not sorted by kinds of shapes: a caller may wait for an answer before it writes the next case, and
+/// `docs/queries.md` says how little sorting would save.
+///
 /// # Errors
 /// The input cannot be read or the output not be written. A case that makes no sense is no error, but a line that says so.
 pub fn run(pairs: &Pairs, output: &mut dyn Write) -> Result<(), Failed> {

@@ -5,10 +5,12 @@
 //! closed mesh, `convex` takes a pair of cores, `unbounded` has the formula for half-spaces and planes.
 //!
 //! For a pair of cores `ladder` chooses the solver: a closed form (`segments`), `gjk` with or without `momentum` and then `epa`,
-//! separating axes (`sat`), Newton's method (`smooth`), or one for comparison (`frank_wolfe`, `qp`). What doubles leave open
-//! `escalation` hands to `revolution`, `double_double` and `exact`. Below lie the Minkowski difference, its simplices and polytope,
-//! and the support functions. [`touching_pairs`] is a second door, for all touching triangles.
+//! separating axes (`sat`), Newton's method (`smooth`), or one for comparison (`frank_wolfe`, `qp`); `line_of_centers` and
+//! `far_apart` answer some verdicts before. What doubles leave open `escalation` hands to `revolution`, `double_double` and
+//! `exact`. Below lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a
+//! second door, for all touching triangles; [`separations`] is the first one for many pairs at once.
 
+mod batch;
 mod box_gaps;
 mod bracketing;
 mod convex;
@@ -54,6 +56,7 @@ mod walk;
 mod wall;
 mod witness;
 
+pub use batch::{PairQuestion, separations};
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;

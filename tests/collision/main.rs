@@ -1,6 +1,7 @@
 //! The narrow phase against closed forms, against itself turned around, and against slower ways to the same answer: above
 //! all against an oracle of its own arithmetic, in `soundness`.
 
+mod batches;
 mod caches;
 mod closed_forms;
 mod early_outs;
