@@ -45,10 +45,10 @@ pub(super) fn parted(a: &Shape, b: &Shape, at_a: &Placement, at_b: &Placement, g
 }
 
 fn any_point(core: &Core) -> Option<Vec3> {
-    match core {
-        Core::Mesh(mesh) => Some(mesh.vertices()[0]),
-        core => is_convex(core).then(|| support(core, Vec3::new(0.0, 0.0, 1.0))),
+    if let Core::Mesh(mesh) = core {
+        return Some(mesh.vertices()[0]);
     }
+    is_convex(core).then(|| support(core, Vec3::new(0.0, 0.0, 1.0)))
 }
 
 /// No point of the box is farther from the origin, metres.

@@ -143,16 +143,16 @@ mod tests {
     #[test]
     fn nearest_points_of_segments_by_hand() {
         let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
-        let nearest = |between: Vec3, p: Vec3, q: Vec3| {
+        let of = |between: Vec3, p: Vec3, q: Vec3| {
             let placed =
                 |half: Vec3| Half { middle: Vec3::zeros(), half, square: half.norm_squared(), reach: half.norm() };
-            super::nearest(between, &placed(p), &placed(q))
+            nearest(between, &placed(p), &placed(q))
         };
-        assert_eq!(nearest(z, x, y), (0.0, 0.0), "crossing above one another");
-        assert_eq!(nearest(x * 3.0, x, x), (1.0, -1.0), "one behind the other");
-        assert_eq!(nearest(x * 3.0, x, -x), (1.0, 1.0), "the other way round");
-        assert_eq!(nearest(x * 2.0 + z, x, y), (1.0, 0.0), "beside the end");
-        assert_eq!(nearest(z, Vec3::zeros(), Vec3::zeros()), (0.0, 0.0), "two points");
-        assert_eq!(nearest(y * 0.5 + z, Vec3::zeros(), y), (0.0, -0.5), "a point beside a segment");
+        assert_eq!(of(z, x, y), (0.0, 0.0), "crossing above one another");
+        assert_eq!(of(x * 3.0, x, x), (1.0, -1.0), "one behind the other");
+        assert_eq!(of(x * 3.0, x, -x), (1.0, 1.0), "the other way round");
+        assert_eq!(of(x * 2.0 + z, x, y), (1.0, 0.0), "beside the end");
+        assert_eq!(of(z, Vec3::zeros(), Vec3::zeros()), (0.0, 0.0), "two points");
+        assert_eq!(of(y * 0.5 + z, Vec3::zeros(), y), (0.0, -0.5), "a point beside a segment");
     }
 }
