@@ -107,7 +107,9 @@ pub(super) fn by_gjk(
     cost: &mut Cost,
 ) -> Epa {
     let mut found = first(difference, start, target, cost);
-    if difference.memory.is_empty() && target.may_be_decided_from_above(found.lower) {
+    // A solver that was asked for by name does its own work.
+    let by_default = matches!(target.goal.solver, Solver::Default | Solver::Exact);
+    if by_default && difference.memory.is_empty() && target.may_be_decided_from_above(found.lower) {
         found.upper = found.upper.min(line_of_centers::upper_bound(difference));
     }
     gjk(&mut found, difference, steering, target, cost);
