@@ -55,12 +55,6 @@ impl<'a> Target<'a> {
         Bracket { lower: lower - self.radii - slack(lower), upper: upper - self.radii + slack(upper) }
     }
 
-    /// Whether a bracket that holds `lower` may be decided from above, by a proof that the (scaled) cores meet or are near enough.
-    #[inline]
-    pub fn may_be_decided_from_above(&self, lower: f64) -> bool {
-        lower <= self.near
-    }
-
     /// Cores farther apart than this are far enough for what is asked, but for rounding; metres, of the scaled cores.
     pub fn enough(&self) -> f64 {
         let apart = match self.goal.depth {

@@ -109,8 +109,11 @@ pub(super) fn by_gjk(
     let mut found = first(difference, start, target, cost);
     // A solver that was asked for by name does its own work.
     let by_default = matches!(target.goal.solver, Solver::Default | Solver::Exact);
-    if by_default && difference.memory.is_empty() && target.may_be_decided_from_above(found.lower) {
-        found.upper = found.upper.min(line_of_centers::upper_bound(difference));
+    if by_default
+        && difference.memory.is_empty()
+        && let Some(upper) = line_of_centers::overlap(difference, target, found.lower)
+    {
+        return Epa { upper, ..known(&found, Termination::Decided) };
     }
     gjk(&mut found, difference, steering, target, cost);
     let stopped = |termination| known(&found, termination);

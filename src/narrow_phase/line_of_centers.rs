@@ -3,6 +3,8 @@
 //! Deep overlaps are told that way for the price of a support point or two, where GJK goes on until a tetrahedron encloses the
 //! origin. It says nothing about how deep they are.
 
+use super::bracketing::Target;
+use super::goal::Depth;
 use super::minkowski::Difference;
 use crate::geometry::vector::{ORIGIN, sizes};
 use crate::geometry::{Core, Vec3};
@@ -11,9 +13,20 @@ use crate::geometry::{Core, Vec3};
 /// the place and some 20 u S for the rest (`docs/derivations/bracket.md`, "On the line of centres").
 const ERRORS: f64 = 3.0;
 
-/// An upper bound of the signed distance of the cores, metres; infinite where nothing is known.
+/// An upper bound of the signed distance of the cores, metres, when it shows an overlap and that is all that was asked. `lower`: a
+/// lower bound; cores that it parts are not looked at.
+#[inline]
+pub(super) fn overlap(difference: &Difference, target: &Target, lower: f64) -> Option<f64> {
+    if lower > 0.0 || target.goal.depth == Depth::Penetration {
+        return None;
+    }
+    let upper = upper_bound(difference);
+    target.is_decided(&target.bracket(lower, upper)).then_some(upper)
+}
+
+/// Infinite where nothing is known.
 #[inline(never)]
-pub(super) fn upper_bound(difference: &Difference) -> f64 {
+fn upper_bound(difference: &Difference) -> f64 {
     let (Some(a), Some(b)) = (Middle::of(difference.a), Middle::of(difference.b)) else { return f64::INFINITY };
     let between = difference.b_in_a.point(b.center) - a.center;
     // How many times longer the line is than the part of it that is within each.

@@ -99,13 +99,15 @@ pub(super) fn newton(pair: &Smooth, difference: &mut Difference, target: &Target
         cost.supports += 1;
         cost.gjk_iterations += 1;
         let gap = direction.dot(&vertex.w);
-        let (lower, mut upper) = (gap - error, vertex.w.norm() + error);
-        if widest == f64::NEG_INFINITY && target.may_be_decided_from_above(lower) {
-            upper = upper.min(line_of_centers::upper_bound(difference));
-        }
+        let (lower, upper) = (gap - error, vertex.w.norm() + error);
         let bracket = target.bracket(lower, upper);
         let found = |termination| Some(Epa { lower, upper, direction, nearest: vertex, termination });
         difference.memory.direction = direction;
+        if widest == f64::NEG_INFINITY
+            && let Some(upper) = line_of_centers::overlap(difference, target, lower)
+        {
+            return Some(Epa { lower, upper, direction, nearest: vertex, termination: Termination::Decided });
+        }
         if target.is_met(&bracket) {
             return found(Termination::Converged);
         }
