@@ -44,9 +44,11 @@ pub(super) fn parted(a: &Shape, b: &Shape, at_a: &Placement, at_b: &Placement, g
     Some(place(&found, bracket, &a, &target, error, cost))
 }
 
+/// Of a mesh one of triangle 0, which the answer names; a vertex may belong to no triangle.
 fn any_point(core: &Core) -> Option<Vec3> {
     if let Core::Mesh(mesh) = core {
-        return Some(mesh.vertices()[0]);
+        let [point, _, _] = mesh.triangle(0);
+        return Some(point);
     }
     is_convex(core).then(|| support(core, Vec3::new(0.0, 0.0, 1.0)))
 }

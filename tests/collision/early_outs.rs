@@ -1,9 +1,11 @@
 //! Questions that are answered before the distance is known.
 
-use clearance::geometry::{Pose, Shape, Vec3};
+use std::sync::Arc;
+
+use clearance::geometry::{Pose, Shape, TriangleMesh, Vec3};
 use clearance::narrow_phase::{Depth, Goal, separation};
 
-use crate::samples::Random;
+use crate::samples::{Random, at};
 
 /// Oracle: the depth that is built in: both hold the ball of that radius around the middle of the line of centres.
 #[test]
@@ -37,5 +39,17 @@ fn a_deep_overlap_is_told_from_one_look_along_the_line_of_centers() {
                 }
             }
         }
+    }
+}
+
+/// Oracle: the distance by hand. A vertex that no triangle uses, here next to the other body, is not a point of the mesh.
+#[test]
+fn a_vertex_without_a_triangle_is_no_witness() {
+    let vertices = vec![Vec3::new(2.9, 0.0, 0.0), Vec3::zeros(), Vec3::y(), Vec3::z()];
+    let mesh = Shape::mesh(Arc::new(TriangleMesh::surface(vertices, vec![[1, 2, 3]]).unwrap()));
+    let sphere = Shape::sphere(1.0).unwrap();
+    for (a, b, at_a, at_b) in [(&mesh, &sphere, 0.0, 4.0), (&sphere, &mesh, 4.0, 0.0)] {
+        let found = separation(a, b, &at(at_a, 0.0, 0.0), &at(at_b, 0.0, 0.0), &Goal::verdict()).unwrap();
+        assert!(found.bracket.lower > 0.0 && found.bracket.lower <= 3.0 && found.bracket.upper >= 3.0, "{found:?}");
     }
 }
