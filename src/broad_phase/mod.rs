@@ -5,6 +5,7 @@
 //! by the larger one the tree keeps to save work. The order of a report does depend on the shape, except in the walk
 //! by distance, so callers sort.
 
+mod cast;
 mod health;
 mod insert;
 mod nearest;

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 use super::{DynamicTree, ProxyId};
-use crate::geometry::{Aabb, Vec3};
+use crate::geometry::{Aabb, BoxCast, Vec3};
 
 #[derive(Clone, Debug)]
 enum Command {
@@ -21,6 +21,7 @@ enum Command {
     Replace(prop::sample::Index, Aabb),
     Overlap(Aabb),
     Nearest(Aabb, f64),
+    Cast(Aabb, Vec3, f64),
     AllPairs,
 }
 
@@ -36,6 +37,8 @@ struct Reached {
     pairs: usize,
     near: usize,
     near_ties: usize,
+    met: usize,
+    met_first: usize,
     deep: usize,
 }
 
@@ -52,6 +55,12 @@ fn boxes() -> impl Strategy<Value = Aabb> {
     (corner, sides).prop_map(|(min, sides)| Aabb { min, max: min + sides })
 }
 
+/// Along axes, askew, and none at all.
+fn motions() -> impl Strategy<Value = Vec3> {
+    let along = prop_oneof![2 => Just(0.0), 3 => (-3..4).prop_map(f64::from), 2 => -4.0..4.0];
+    [along.clone(), along.clone(), along].prop_map(Vec3::from)
+}
+
 fn commands() -> impl Strategy<Value = Vec<Command>> {
     let index = any::<prop::sample::Index>;
     let step = [-0.05..0.05_f64, -0.05..0.05, -0.05..0.05].prop_map(Vec3::from);
@@ -62,6 +71,7 @@ fn commands() -> impl Strategy<Value = Vec<Command>> {
         2 => (index(), boxes()).prop_map(|(i, aabb)| Command::Replace(i, aabb)),
         2 => boxes().prop_map(Command::Overlap),
         2 => (boxes(), 0.0..5.0_f64).prop_map(|(aabb, within)| Command::Nearest(aabb, within)),
+        2 => (boxes(), motions(), 0.0..1.5_f64).prop_map(|(start, motion, within)| Command::Cast(start, motion, within)),
         1 => Just(Command::AllPairs),
     ];
     prop::collection::vec(command, 1..80)
@@ -115,6 +125,9 @@ impl Compared {
                 assert!(stats.leaves >= found.len() as u64 && stats.nodes >= stats.leaves);
             }
             Command::Nearest(query, within) => self.check_nearest(query, *within, reached),
+            Command::Cast(start, motion, within) => {
+                self.check_cast(&BoxCast { start: *start, motion: *motion }, *within, reached);
+            }
             Command::AllPairs => self.check_pairs(reached),
         }
     }
@@ -201,6 +214,34 @@ impl Compared {
     }
 }
 
+impl Compared {
+    fn check_cast(&self, cast: &BoxCast, within: f64, reached: &mut Reached) {
+        let touch = |aabb: &Aabb| cast.first_touch(aabb);
+        let mut found = Vec::new();
+        self.tree.cast(cast, within, |payload, fraction| {
+            assert_eq!(Some(fraction), touch(&self.expected[&payload].1));
+            found.push(payload);
+            within
+        });
+        found.sort_unstable();
+        let meets = |aabb: &Aabb| touch(aabb).is_some_and(|fraction| fraction <= within);
+        let expected: Vec<u64> =
+            self.expected.iter().filter(|(_, (_, aabb))| meets(aabb)).map(|(key, _)| *key).collect();
+        reached.met += expected.len();
+        assert_eq!(found, expected);
+
+        // With a bound that shrinks to the earliest so far, the first of all is still among the visited.
+        let mut first = f64::INFINITY;
+        self.tree.cast(cast, 1.0, |_, fraction| {
+            first = first.min(fraction);
+            first
+        });
+        let least = self.expected.values().filter_map(|(_, aabb)| touch(aabb)).fold(f64::INFINITY, f64::min);
+        reached.met_first += usize::from(first > 0.0 && first <= 1.0);
+        assert_eq!(first, least);
+    }
+}
+
 #[test]
 fn random_changes_agree_with_brute_force() {
     let reached = RefCell::new(Reached::default());
@@ -220,8 +261,20 @@ fn random_changes_agree_with_brute_force() {
             Ok(())
         })
         .unwrap();
-    let Reached { empty, moved_inside, reinserted, removed, degenerate, overlaps, pairs, near, near_ties, deep } =
-        reached.into_inner();
+    let Reached {
+        empty,
+        moved_inside,
+        reinserted,
+        removed,
+        degenerate,
+        overlaps,
+        pairs,
+        near,
+        near_ties,
+        met,
+        met_first,
+        deep,
+    } = reached.into_inner();
     for (regime, count) in [
         ("empty tree", empty),
         ("move inside the fat box", moved_inside),
@@ -232,6 +285,8 @@ fn random_changes_agree_with_brute_force() {
         ("pair found", pairs),
         ("entry within a distance", near),
         ("equal distances", near_ties),
+        ("entry on the way of a moving box", met),
+        ("first entry on the way", met_first),
         ("tree of several levels", deep),
     ] {
         assert!(count >= 20, "{regime}: only {count}");

@@ -86,6 +86,9 @@ impl DynamicTree {
         }
     }
 
+    /// To be called after a list of changes and before the next question: puts right what the changes put off.
+    pub fn settle(&mut self) {}
+
     /// Number of entries.
     #[must_use]
     pub fn len(&self) -> usize {

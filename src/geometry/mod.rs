@@ -4,6 +4,7 @@
 //! Metres, radians, right-handed frames, `f64` throughout.
 
 mod aabb;
+mod box_cast;
 mod compound;
 mod convex_hull;
 mod hull_builder;
@@ -24,6 +25,7 @@ mod twin;
 pub mod vector;
 
 pub use aabb::Aabb;
+pub use box_cast::BoxCast;
 pub use compound::{Compound, Part};
 pub use convex_hull::ConvexHull;
 pub use hull_interior::HullInterior;
