@@ -24,7 +24,6 @@ pub enum BroadPhaseKind {
 
 /// The boxes of a scene, in one of the ways.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "a snapshot has one, in place")]
 pub enum BroadPhase {
     /// A tree of boxes.
     Tree(DynamicTree),

@@ -112,7 +112,7 @@ impl<'a> Pairs<'a> {
     ) {
         let snapshot = self.snapshot;
         let mut offer = |search: &mut Search, id: BodyId| {
-            let body = snapshot.body(id).expect("the tree holds bodies of the snapshot");
+            let body = snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
             if self.sieve.passes(body)
                 && let Some(margin) = margin(body)
             {
@@ -125,7 +125,7 @@ impl<'a> Pairs<'a> {
         match bounds {
             Some(bounds) => {
                 let reach = search.reach();
-                let stats = snapshot.tree().nearest(&bounds, reach, |id, _| {
+                let stats = snapshot.broad_phase().nearest(&bounds, reach, |id, _| {
                     offer(search, BodyId(id));
                     search.reach()
                 });

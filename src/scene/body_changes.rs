@@ -125,10 +125,10 @@ impl Snapshot {
     /// Puts a body in the place of the one with its id, and lists it where queries find it.
     fn put(&mut self, mut body: Body) {
         match (body.proxy, body.bounds.filter(|_| body.enabled)) {
-            (Some(proxy), Some(bounds)) => drop(self.tree.move_to(proxy, bounds)),
+            (Some(proxy), Some(bounds)) => drop(self.broad_phase.move_to(proxy, bounds)),
             (None, Some(bounds)) => {
                 self.unlist(&body);
-                body.proxy = Some(self.tree.insert(bounds, body.id.0));
+                body.proxy = Some(self.broad_phase.insert(bounds, body.id.0));
             }
             (_, None) => {
                 self.unlist(&body);
@@ -144,10 +144,10 @@ impl Snapshot {
         self.bodies.insert(body.id.0, Arc::new(body));
     }
 
-    /// Takes a body out of the tree and the list of those without bounds.
+    /// Takes a body out of the broad phase and the list of those without bounds.
     fn unlist(&mut self, body: &Body) {
         if let Some(proxy) = body.proxy {
-            self.tree.remove(proxy);
+            self.broad_phase.remove(proxy);
         }
         if let Ok(place) = self.unbounded.binary_search(&body.id) {
             Arc::make_mut(&mut self.unbounded).remove(place);

@@ -7,8 +7,8 @@ use rpds::HashTrieMapSync;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
-use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene};
-use crate::broad_phase::DynamicTree;
+use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene, SceneOptions};
+use crate::broad_phase::BroadPhase;
 
 /// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct Snapshot {
     pub(super) next_body: BodyId,
     pub(super) groups: Groups,
     /// Enabled bodies with bounds, by their ids.
-    pub(super) tree: DynamicTree,
+    pub(super) broad_phase: BroadPhase,
     /// Enabled bodies without bounds, sorted.
     pub(super) unbounded: Arc<Vec<BodyId>>,
     /// In the order of their names.
@@ -36,7 +36,7 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// The scene at the beginning of an epoch: empty, revision zero. The first body gets the id 1.
-    pub(super) fn empty(epoch: Epoch) -> Self {
+    pub(super) fn empty(epoch: Epoch, options: &SceneOptions) -> Self {
         Self {
             epoch,
             revision: Revision(0),
@@ -44,7 +44,7 @@ impl Snapshot {
             names: HashTrieMapSync::new_sync(),
             next_body: BodyId(1),
             groups: Groups::new(),
-            tree: DynamicTree::new(),
+            broad_phase: BroadPhase::new(options.broad_phase),
             unbounded: Arc::new(Vec::new()),
             robots: Arc::new(Vec::new()),
             next_link: 0,
@@ -92,8 +92,8 @@ impl Snapshot {
 
     /// The enabled bodies that have bounds; a payload is the number of a [`BodyId`], a box is [`Body::bounds`].
     #[must_use]
-    pub fn tree(&self) -> &DynamicTree {
-        &self.tree
+    pub fn broad_phase(&self) -> &BroadPhase {
+        &self.broad_phase
     }
 
     /// The enabled bodies that have no bounds (half-spaces and planes), in the order of their ids.
