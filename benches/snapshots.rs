@@ -11,19 +11,16 @@ use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
 use clearance::scene::{BodyId, Edit, Epoch, NewBody, Party, Scene};
 
-/// A place in a cube with about half a pair a body.
-fn place(i: usize, count: usize) -> Pose {
+/// A place in a cube with about half a pair a body, and a little off it.
+fn place(i: usize, count: usize, off: f64) -> Pose {
     let side = 1.6 * libm::cbrt(count as f64);
-    let along = |step: f64| side * (i as f64 * step).fract();
+    let along = |step: f64| side * (i as f64 * step).fract() + off;
     let translation = Vec3::new(along(0.754_877_666_2), along(0.569_840_290_9), along(0.430_159_709_0));
     Pose::new(translation, Quaternion::IDENTITY).expect("finite numbers")
 }
 
-/// The same a little off.
 fn nearby(i: usize, count: usize, round: usize) -> Pose {
-    let Pose { translation, rotation } = place(i, count);
-    let by = 0.05 * ((i * 31 + round * 17) % 97) as f64 / 97.0;
-    Pose::new(translation + Vec3::repeat(by), rotation).expect("finite numbers")
+    place(i, count, 0.05 * ((i * 31 + round * 17) % 97) as f64 / 97.0)
 }
 
 fn scene_of(count: usize) -> (Scene, f64) {
@@ -32,7 +29,7 @@ fn scene_of(count: usize) -> (Scene, f64) {
     let shape = Arc::new(Shape::cuboid(Vec3::repeat(0.5)).expect("positive"));
     let body = |i: usize| NewBody {
         groups: vec![format!("group {}", i % 16)],
-        ..NewBody::new(format!("body {i}"), Arc::clone(&shape), place(i, count))
+        ..NewBody::new(format!("body {i}"), Arc::clone(&shape), place(i, count, 0.0))
     };
     let edits: Vec<Edit> = (0..count).map(|i| Edit::AddBody(body(i))).collect();
     let begun = Instant::now();
@@ -70,7 +67,7 @@ fn main() {
         let one = measured(301, &mut scene, |round| vec![move_one(some(round), count, round)]);
         let shape = Arc::new(Shape::sphere(0.3).expect("positive"));
         let in_and_out = measured(101, &mut scene, |round| {
-            let new = NewBody::new("one more", Arc::clone(&shape), place(some(round), count));
+            let new = NewBody::new("one more", Arc::clone(&shape), place(some(round), count, 0.0));
             vec![Edit::AddBody(new), Edit::RemoveBody { body: "one more".into() }]
         });
         let allow = measured(101, &mut scene, |round| {

@@ -32,6 +32,8 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    /// Bytes that the edits wrote which led here.
+    pub(super) written: usize,
 }
 
 impl Snapshot {
@@ -52,6 +54,7 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            written: 0,
         }
     }
 
@@ -70,6 +73,12 @@ impl Snapshot {
     /// All bodies in the order of their ids.
     pub fn bodies(&self) -> impl Iterator<Item = &Arc<Body>> {
         self.bodies.values()
+    }
+
+    /// Bodies with ids above `id`, in the order of their ids.
+    pub fn bodies_after(&self, id: BodyId) -> impl Iterator<Item = &Arc<Body>> {
+        let first = id.0.checked_add(1);
+        first.into_iter().flat_map(|first| self.bodies.values_from(first))
     }
 
     /// Number of bodies.
