@@ -32,6 +32,8 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    /// An entry that may have had the largest margin was changed in this draft.
+    pub(super) largest_margin_gone: bool,
     /// Bytes that the edits wrote which led here.
     pub(super) written: usize,
 }
@@ -54,6 +56,7 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            largest_margin_gone: false,
             written: 0,
         }
     }

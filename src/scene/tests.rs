@@ -3,6 +3,7 @@
 
 mod entries;
 mod history;
+mod memory;
 mod model;
 mod random_edits;
 mod refusals;
