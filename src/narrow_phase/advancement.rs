@@ -21,6 +21,9 @@ pub const MOST_ROUNDS: usize = 512;
 /// Rounds on a pair of boxes: enough to tell most that are missed.
 const BOX_ROUNDS: usize = 4;
 
+/// A gap of fewer than this many times what rounding hides is taken for a contact to come: steps within it would not end.
+const NOISES: f64 = 8.0;
+
 /// Distances are measured to this, relatively: the direction matters more than the number.
 const MEASURED_TO: f64 = 1e-3;
 
@@ -143,7 +146,6 @@ impl<'a> Pair<'a> {
         let mut open: Option<[f64; 2]> = None;
         // No early look for a contact before this time: the last one saw none.
         let mut looked_until = f64::NEG_INFINITY;
-        let mut step = 0.0;
         let mut rounds = 0;
         while rounds < MOST_ROUNDS {
             rounds += 1;
@@ -160,6 +162,7 @@ impl<'a> Pair<'a> {
                 timing.touching_at = time;
                 break;
             }
+            let mut stride = asked.resolution;
             if found.bracket.lower > 0.0 {
                 let (free, forecast) = self.free_for(time, &now, &found);
                 if free >= 1.0 - time {
@@ -169,32 +172,34 @@ impl<'a> Pair<'a> {
                 if next > bound {
                     return closed(timing, open);
                 }
-                let is_slow = next - time < asked.resolution;
-                if is_slow && time >= looked_until {
-                    // As far ahead as the gap and what rounding hides take to close, twice over.
-                    let gap = forecast.as_ref().map_or(0.0, |forecast| found.bracket.lower + 8.0 * forecast.noise());
-                    let closing = forecast.as_ref().map_or(0.0, Forecast::closing);
-                    let ahead = if closing > 0.0 { 2.0 * gap / closing } else { asked.resolution };
-                    let ahead = if ahead < asked.resolution { ahead } else { asked.resolution };
-                    let look = later(time, ahead);
-                    rounds += 1;
-                    let then = self.approach.at(look);
-                    let Some(ahead) = self.measure(&then, &goal, &mut timing.cost) else { return timing };
-                    if ahead.bracket.upper <= 0.0 {
-                        timing.touching_at = look;
-                        break;
-                    }
-                    looked_until = look;
+                if next - time >= asked.resolution {
+                    time = next;
+                    continue;
                 }
-                if next > later(time, 0.0) || !is_slow {
-                    step = next - time;
+                // As far ahead as the gap and what rounding hides take to close, twice over.
+                let noise = forecast.as_ref().map_or(0.0, Forecast::noise);
+                let closing = forecast.as_ref().map_or(0.0, Forecast::closing);
+                let ahead = 2.0 * (found.bracket.lower + NOISES * noise) / closing;
+                stride = if ahead > 0.0 && ahead < 1.0 { ahead } else { asked.resolution };
+                // With a gap that rounding does not hide, small steps are steps all the same.
+                if found.bracket.lower > NOISES * noise && next > later(time, 0.0) {
+                    if time >= looked_until {
+                        let look = later(time, stride.min(asked.resolution));
+                        rounds += 1;
+                        let then = self.approach.at(look);
+                        let Some(ahead) = self.measure(&then, &goal, &mut timing.cost) else { return timing };
+                        if ahead.bracket.upper <= 0.0 {
+                            timing.touching_at = look;
+                            break;
+                        }
+                        looked_until = look;
+                    }
                     time = next;
                     continue;
                 }
             }
             // Nothing moves time any more: look on, in longer and longer strides, until one of the bounds decides.
             let start = open.map_or(time, |[start, _]| start);
-            let mut stride = step.clamp(4.0 * f64::EPSILON, asked.resolution.max(4.0 * f64::EPSILON));
             loop {
                 let look = later(time, stride);
                 open = Some([start, look]);
