@@ -14,6 +14,7 @@ mod meshes;
 mod oracle;
 mod pair_bytes;
 mod random_pairs;
+mod rays;
 mod samples;
 mod solvers;
 mod soundness;
