@@ -93,6 +93,7 @@ impl Scene {
         }
         let revision = Revision(actual.0 + 1);
         next.settle(self.latest(), revision);
+        next.changes.close(revision, self.limits.snapshots_kept);
         debug_assert!(next.body_count() > VALIDATED_BODIES || next.validate() == Ok(()), "{:?}", next.validate());
         self.kept.push_back(Arc::new(next));
         while self.kept.len() > self.limits.snapshots_kept.max(1) {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rpds::HashTrieMapSync;
 
+use super::change_log::ChangeLog;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
@@ -32,6 +33,7 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    pub(super) changes: ChangeLog,
 }
 
 impl Snapshot {
@@ -52,6 +54,7 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            changes: ChangeLog::new(Revision(0)),
         }
     }
 
