@@ -179,7 +179,7 @@ impl<'a> States<'a> {
             }
             let one = self.party(part, scratch);
             let offer = |search: &mut Search, id: BodyId| {
-                let body = self.snapshot.body(id).expect("the tree holds bodies of the snapshot");
+                let body = self.snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
                 let link = self.parts[part].link;
                 if self.sieve.passes(body) && self.admits(link, body) {
                     let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
@@ -187,7 +187,7 @@ impl<'a> States<'a> {
                 }
             };
             let reach = search.reach();
-            let stats = self.snapshot.tree().nearest(&scratch.bounds[part], reach, |id, _| {
+            let stats = self.snapshot.broad_phase().nearest(&scratch.bounds[part], reach, |id, _| {
                 offer(search, BodyId(id));
                 search.reach()
             });
