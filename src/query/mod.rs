@@ -5,6 +5,7 @@ mod batch;
 mod context;
 mod pairs;
 mod request;
+mod robot_parts;
 mod search;
 mod states;
 mod verdict;
