@@ -4,6 +4,7 @@
 //! Metres, radians, right-handed frames, `f64` throughout.
 
 mod aabb;
+mod bounding_ball;
 mod box_cast;
 mod compound;
 mod convex_hull;
@@ -26,6 +27,7 @@ mod twin;
 pub mod vector;
 
 pub use aabb::Aabb;
+pub use bounding_ball::Ball;
 pub use box_cast::BoxCast;
 pub use compound::{Compound, Part};
 pub use convex_hull::ConvexHull;

@@ -8,6 +8,7 @@ mod contacts;
 mod context;
 mod pairs;
 mod request;
+mod robot_parts;
 mod search;
 mod states;
 mod verdict;
