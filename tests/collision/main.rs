@@ -9,6 +9,7 @@ mod extremes;
 mod hard_cases;
 mod known_failures;
 mod laws;
+mod many_pieces;
 mod meshes;
 mod oracle;
 mod pair_bytes;
