@@ -1,7 +1,7 @@
 //! How far apart two shapes are, as a proved bracket.
 //!
-//! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the trees of
-//! meshes (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
+//! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the `trees` of
+//! meshes, clouds and terrain (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
 //! closed mesh, `convex` takes a pair of cores, `unbounded` has the formula for half-spaces and planes.
 //!
 //! For a pair of cores `ladder` chooses the solver: a closed form (`segments`), `gjk` with or without `momentum` and then `epa`,
@@ -57,6 +57,7 @@ mod solid;
 mod solver;
 mod support;
 mod touching;
+mod trees;
 mod triangles;
 mod unbounded;
 mod union;
