@@ -3,6 +3,9 @@
 mod answer;
 mod batch;
 mod context;
+mod motion_course;
+mod motion_measure;
+mod motions;
 mod pairs;
 mod request;
 mod robot_parts;
@@ -10,6 +13,6 @@ mod search;
 mod states;
 mod verdict;
 
-pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
-pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};
