@@ -6,6 +6,9 @@ mod changed_pairs;
 mod contact_tracker;
 mod contacts;
 mod context;
+mod motion_course;
+mod motion_measure;
+mod motions;
 mod pairs;
 mod request;
 mod robot_parts;
@@ -13,10 +16,10 @@ mod search;
 mod states;
 mod verdict;
 
-pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
 pub use contact_tracker::ContactTracker;
 pub use contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
 };
-pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};

@@ -4,7 +4,7 @@ use super::answer::{Refused, Side};
 use super::context::Sieve;
 use super::request::Context;
 use super::search::Party;
-use crate::geometry::{Aabb, Placement, Pose, Shape};
+use crate::geometry::{Aabb, Placement, Pose, Shape, Vec3};
 use crate::robot::{LinkShape, RobotModel};
 use crate::scene::{Body, RobotInScene, Snapshot};
 
@@ -86,23 +86,31 @@ impl<'a> RobotParts<'a> {
 
     pub fn placed(&self) -> Placed {
         let n = self.parts.len();
+        let nowhere = Aabb { min: Vec3::zeros(), max: Vec3::zeros() };
         Placed {
             poses: Vec::with_capacity(self.model.links().len()),
-            placements: Vec::with_capacity(n),
-            bounds: Vec::with_capacity(n),
+            placements: vec![Placement::identity(); n],
+            bounds: vec![nowhere; n],
         }
     }
 
     /// Forward kinematics, and where that puts every shape.
     pub fn place(&self, positions: &[f64], placed: &mut Placed) {
+        self.place_links(positions, placed);
+        (0..self.parts.len()).for_each(|part| self.place_part(part, placed));
+    }
+
+    /// Forward kinematics alone; then [`Self::place_part`] for the shapes that matter.
+    pub fn place_links(&self, positions: &[f64], placed: &mut Placed) {
         self.model.link_poses(positions, &self.robot.base, &mut placed.poses);
-        placed.placements.clear();
-        placed.bounds.clear();
-        for part in &self.parts {
-            let at = placed.poses[part.link as usize].compose(&part.of_link.pose).placement();
-            placed.placements.push(at);
-            placed.bounds.push(part.shape().placed_bounds(&at).expect("the shapes of links are bounded"));
-        }
+    }
+
+    /// Where its link puts a shape.
+    pub fn place_part(&self, part: usize, placed: &mut Placed) {
+        let LinkPart { link, of_link, .. } = &self.parts[part];
+        let at = placed.poses[*link as usize].compose(&of_link.pose).placement();
+        placed.placements[part] = at;
+        placed.bounds[part] = of_link.shape.placed_bounds(&at).expect("the shapes of links are bounded");
     }
 
     pub fn party<'s>(&'s self, part: usize, placed: &'s Placed) -> Party<'s> {
