@@ -17,6 +17,8 @@ pub(super) struct Approach<'a> {
     pub gain: Vec3,
     /// What the distance of the origins may be off by at any time, metres.
     drift: f64,
+    /// Whether the numbers are those that were given, so that both ends are exact.
+    is_given: bool,
     /// The origins are never farther apart than this, metres.
     pub farthest: f64,
 }
@@ -43,7 +45,13 @@ impl<'a> Approach<'a> {
         let drift = UNIT_ROUNDOFF * (4.0 * length(between) + 8.0 * moved);
         // The distance of two points on straight lines is greatest at an end.
         let farthest = length(between).max(length(between + gain)) * (1.0 + 8.0 * UNIT_ROUNDOFF) + drift;
-        Self { a, b, between, gain, drift, farthest }
+        Self { a, b, between, gain, drift, is_given: true, farthest }
+    }
+
+    /// The same of motions that were computed: the distance of the origins may be off by `error` more at any time, metres.
+    pub fn computed(a: &'a RigidMotion, b: &'a RigidMotion, error: f64) -> Self {
+        let exact = Self::new(a, b);
+        Self { drift: exact.drift + error, is_given: false, farthest: exact.farthest + error, ..exact }
     }
 
     /// At a time in `0..=1`.
@@ -51,7 +59,7 @@ impl<'a> Approach<'a> {
         let (a, b) = (self.a, self.b);
         let ends = a.end().zip(b.end()).filter(|_| time == 1.0);
         let given = if time == 0.0 { Some((a.start(), b.start())) } else { ends };
-        if let Some((pose_a, pose_b)) = given {
+        if let Some((pose_a, pose_b)) = given.filter(|_| self.is_given) {
             let given = [pose_a.placement(), pose_b.placement()];
             let [at_a, at_b] = &given;
             let across = at_b.translation - at_a.translation;

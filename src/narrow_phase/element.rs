@@ -58,6 +58,11 @@ impl<'a> Element<'a> {
         own.measured()
     }
 
+    /// The same core in its own frame, as a thing that was computed.
+    pub fn alone(&self) -> Self {
+        Self { inner: None, is_given: false, ..self.clone() }.measured()
+    }
+
     /// A triangle of a mesh that is this element's shape.
     pub fn triangle(&self, corners: [Vec3; 3], number: u32) -> Self {
         let number = if self.part.is_some() { self.number } else { number };
@@ -76,6 +81,11 @@ impl<'a> Element<'a> {
         let inner = self.inner.as_ref().map_or(0.0, |inner| length(inner.translation));
         let reach = (radius(self.core()) + inner + self.slack) * (1.0 + 16.0 * UNIT_ROUNDOFF);
         Self { reach, ..self }
+    }
+
+    /// The shape of the body or part.
+    pub fn shape(&self) -> &'a Shape {
+        self.part.map_or(self.whole, |part| &part.shape)
     }
 
     pub fn core(&self) -> &Core {

@@ -12,6 +12,7 @@
 //!
 //! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
 //! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
+//! [`cast_ray`] is the one for rays: `ray_forms` has formulas with their proofs, `ray_mesh` goes down the tree of a mesh.
 
 mod advancement;
 mod approach;
@@ -44,6 +45,9 @@ mod pair_cache;
 mod pieces;
 mod polytope;
 mod qp;
+mod ray;
+mod ray_forms;
+mod ray_mesh;
 mod revolution;
 mod sat;
 mod sat_boxes;
@@ -70,6 +74,7 @@ pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
+pub use ray::{RayGoal, RayImpact, cast_ray};
 pub use separation::{NoSeparation, separation, separation_again};
 pub use solver::{Solver, Unclaimed};
 pub use touching::{NoTriangles, Touching, TouchingPair, Within, touching_pairs};

@@ -15,6 +15,7 @@ mod meshes;
 mod oracle;
 mod pair_bytes;
 mod random_pairs;
+mod rays;
 mod samples;
 mod solvers;
 mod soundness;
