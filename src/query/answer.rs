@@ -185,6 +185,18 @@ pub struct Answer {
     pub cost: Cost,
 }
 
+impl Answer {
+    /// The answer as it is compared: the same for equal questions to equal snapshots, whatever the number of threads, the
+    /// door, the broad phase, and the edits that led to the snapshot. It leaves out how many nodes of trees were opened,
+    /// the only figure that depends on how the broad phase came about.
+    #[must_use]
+    pub fn canonical(mut self) -> Self {
+        self.cost.nodes = 0;
+        self.items.iter_mut().for_each(|item| item.cost.nodes = 0);
+        self
+    }
+}
+
 /// Why a whole request was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refused {

@@ -6,6 +6,7 @@ import numpy as np
 
 import clearance
 from clearance import Verdict
+from clearance.v1 import scene_pb2
 
 from .daemon import DaemonTest
 
@@ -20,6 +21,18 @@ class Scenes(DaemonTest):
         (answer,) = self.scene.distance(subject, at_least=second.revision)
         self.assertAlmostEqual(answer.nearest.signed_distance, 2.5, places=12)
         self.assertEqual((answer.nearest.a.kind, answer.nearest.b.id), ("query", ball))
+
+    def test_the_broad_phase_is_chosen_with_the_scene(self) -> None:
+        for kind in ("tree", "sweep_and_prune", "exhaustive"):
+            scene = self.client.create_scene(f"scene with {kind}", broad_phase=kind)
+            scene.apply(*(clearance.add_body(f"ball {x}", clearance.sphere(0.6), clearance.pose([x, 0, 0])) for x in (0, 1, 3)))
+            (answer,) = scene.collide()
+            self.assertEqual(len(answer.pairs), 1, kind)
+            summary = next(one for one in self.client.scenes() if one.name == scene.name)
+            name = scene_pb2.BroadPhase.Name(summary.broad_phase)
+            self.assertEqual((summary.bodies, name), (3, f"BROAD_PHASE_{kind.upper()}"))
+        with self.assertRaisesRegex(ValueError, "broad_phase: is 'octree'"):
+            self.client.create_scene("never made", broad_phase="octree")
 
     def test_distance_gives_bracket_points_and_normal(self) -> None:
         self.scene.apply(
