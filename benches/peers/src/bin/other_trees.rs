@@ -102,7 +102,8 @@ impl Trees for Obvhs {
     fn first_hit(tree: &Bvh2, boxes: &[Aabb], ray: &Ray) -> f64 {
         let mut hit = RayHit::none();
         let meets = tree.ray_traverse(*ray, &mut hit, |ray, i| {
-            boxes[tree.primitive_indices[i] as usize].intersect_ray(ray)
+            // It tells where the line enters, which is behind a ray that begins inside.
+            boxes[tree.primitive_indices[i] as usize].intersect_ray(ray).max(0.0)
         });
         if meets { f64::from(hit.t) } else { f64::INFINITY }
     }
