@@ -39,6 +39,10 @@ pub struct Limits {
     pub max_mesh_triangles: usize,
     /// Parts of one compound.
     pub max_compound_parts: usize,
+    /// Samples of one height field.
+    pub max_height_samples: usize,
+    /// Points of one point cloud.
+    pub max_cloud_points: usize,
     /// Groups of one body.
     pub max_groups: usize,
     /// Size of one uploaded file, bytes.
@@ -77,6 +81,8 @@ impl Default for Limits {
             max_hull_points: 100_000,
             max_mesh_triangles: 2_000_000,
             max_compound_parts: 10_000,
+            max_height_samples: 20_000_000,
+            max_cloud_points: 5_000_000,
             max_groups: 64,
             max_asset_bytes: 256 << 20,
             max_total_asset_bytes: 2 << 30,
@@ -126,6 +132,8 @@ impl Limits {
             max_hull_points,
             max_mesh_triangles,
             max_compound_parts,
+            max_height_samples,
+            max_cloud_points,
             max_groups,
             max_asset_bytes,
             max_total_asset_bytes,
@@ -158,6 +166,8 @@ impl Limits {
             row("max_hull_points", max_hull_points, "points per hull", EXHAUSTED),
             row("max_mesh_triangles", max_mesh_triangles, "triangles per mesh", EXHAUSTED),
             row("max_compound_parts", max_compound_parts, "parts per compound", EXHAUSTED),
+            row("max_height_samples", max_height_samples, "samples per height field", EXHAUSTED),
+            row("max_cloud_points", max_cloud_points, "points per point cloud", EXHAUSTED),
             row("max_groups", max_groups, "groups per body", EXHAUSTED),
             row("max_asset_bytes", max_asset_bytes, "bytes per uploaded file", EXHAUSTED),
             row("max_total_asset_bytes", max_total_asset_bytes, "bytes of all uploaded files", EXHAUSTED),

@@ -63,13 +63,13 @@ impl<'a> Element<'a> {
         Self { inner: None, is_given: false, ..self.clone() }.measured()
     }
 
-    /// A triangle of a mesh that is this element's shape.
-    pub fn triangle(&self, corners: [Vec3; 3], number: u32) -> Self {
+    /// What is in a leaf of the tree of this element's shape: a triangle of a mesh, say. Of a part of a compound the part is named.
+    pub fn leaf(&self, core: Core, number: u32) -> Self {
         let number = if self.part.is_some() { self.number } else { number };
-        Self { core: Solid::Made(Core::Triangle(corners)), number, ..self.clone() }.measured()
+        Self { core: Solid::Made(core), number, ..self.clone() }.measured()
     }
 
-    /// A box of the tree of a mesh that is this element's shape. `slack`: how far a corner may stick out of it.
+    /// A box of the tree of this element's shape. `slack`: how far a corner may stick out of it.
     pub fn boxed(&self, bounds: &OrientedBox, slack: f64) -> Self {
         let own = Placement::computed(bounds.axes, bounds.center);
         let inner = self.inner.map_or(own, |inner| composed(&inner, &own));
@@ -110,6 +110,9 @@ impl<'a> Element<'a> {
             | Core::Triangle(_)
             | Core::Segment(_)
             | Core::Mesh(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_)
+            | Core::Column(_)
             | Core::Compound(_) => None,
         }
     }

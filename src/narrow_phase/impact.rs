@@ -12,11 +12,10 @@ use super::element::Element;
 use super::goal::Goal;
 use super::outcome::{Cost, Separation, Termination};
 use super::separation::{NoSeparation, separation};
+use super::trees::{AnyLeaf, AnyNode, Growth, Inside, Tree};
 use super::witness::WITNESS_ERROR_ULPS;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::{
-    Content, Core, InvalidShape, MeshTree, NodeId, Part, RigidMotion, Shape, TriangleMesh, Vec3, length,
-};
+use crate::geometry::{Core, InvalidShape, Part, RigidMotion, Shape, Vec3, length};
 
 /// What is asked of two moving shapes.
 #[derive(Clone, Copy)]
@@ -136,8 +135,8 @@ pub fn impact(
     let grown = if goal.margin > 0.0 { Some(a.swept(goal.margin)?) } else { None };
     let a = grown.as_ref().unwrap_or(a);
     let mut search = Search::new(goal);
-    let has_meshes = bodies_of(a).chain(bodies_of(b)).any(|body| mesh_of(body.shape).is_some());
-    if has_meshes && let Some(start) = search.at_the_start(a, b, motion_a, motion_b) {
+    let has_solids = bodies_of(a).chain(bodies_of(b)).any(|body| is_solid_mesh(body.shape));
+    if has_solids && let Some(start) = search.at_the_start(a, b, motion_a, motion_b) {
         return Ok(start);
     }
     let approach = Approach::new(motion_a, motion_b);
@@ -164,8 +163,8 @@ fn bodies_of(shape: &Shape) -> impl Iterator<Item = Body<'_>> {
     alone.into_iter().chain(parts)
 }
 
-fn mesh_of(shape: &Shape) -> Option<&TriangleMesh> {
-    if let Core::Mesh(mesh) = shape.core() { Some(mesh) } else { None }
+fn is_solid_mesh(shape: &Shape) -> bool {
+    if let Core::Mesh(mesh) = shape.core() { mesh.is_solid() } else { false }
 }
 
 /// The earliest impact over the pairs looked at so far.
@@ -235,18 +234,17 @@ impl<'a> Search<'a> {
     }
 
     fn pair(&mut self, approach: &Approach, a: &Body, b: &Body) {
-        match (mesh_of(a.shape), mesh_of(b.shape)) {
-            (None, None) => self.elements(approach, &a.element, &b.element, 0.0),
-            (mesh_a, mesh_b) => {
-                let (a, b) = (Grove::new(&a.element, mesh_a), Grove::new(&b.element, mesh_b));
-                self.walk(approach, &a, &b);
-            }
+        let (grove_a, grove_b) = (Grove::new(a), Grove::new(b));
+        if grove_a.tree.is_none() && grove_b.tree.is_none() {
+            self.elements(approach, &a.element, &b.element, 0.0);
+        } else {
+            self.walk(approach, &grove_a, &grove_b);
         }
     }
 
     /// Down both trees, towards what is met first.
     fn walk(&mut self, approach: &Approach, a: &Grove, b: &Grove) {
-        let mut waiting = vec![(0.0, NodeId::ROOT, NodeId::ROOT)];
+        let mut waiting = vec![(0.0, a.root(), b.root())];
         while let Some((from, node_a, node_b)) = waiting.pop() {
             if from > self.bound {
                 continue;
@@ -255,16 +253,18 @@ impl<'a> Search<'a> {
                 self.give_up(from);
                 return;
             }
-            let children = match (a.children(node_a), b.children(node_b)) {
-                (None, None) => {
-                    self.elements(approach, &a.leaf(node_a), &b.leaf(node_b), from);
+            let children = match (a.inside(node_a), b.inside(node_b)) {
+                (Inside::Leaf(leaf_a), Inside::Leaf(leaf_b)) => {
+                    self.elements(approach, &a.leaf(leaf_a), &b.leaf(leaf_b), from);
                     continue;
                 }
-                (Some([first, second]), other) if other.is_none() || a.size(node_a) >= b.size(node_b) => {
+                (Inside::Children([first, second]), other)
+                    if matches!(other, Inside::Leaf(_)) || a.size(node_a) >= b.size(node_b) =>
+                {
                     [(first, node_b), (second, node_b)]
                 }
-                (_, Some([first, second])) => [(node_a, first), (node_a, second)],
-                (Some(_), None) => unreachable!("covered by the second arm"),
+                (_, Inside::Children([first, second])) => [(node_a, first), (node_a, second)],
+                (Inside::Children(_), Inside::Leaf(_)) => unreachable!("covered by the second arm"),
             };
             self.cost.nodes += 1;
             let arrivals = children.map(|(child_a, child_b)| {
@@ -355,43 +355,50 @@ fn place(found: &Separation, origin: Vec3, origin_error: f64) -> Place {
     }
 }
 
-/// A body as a tree of elements: that of a mesh, or one leaf.
+/// A body as a tree of elements, or as one.
 struct Grove<'a> {
     element: &'a Element<'a>,
-    tree: Option<&'a MeshTree>,
-    /// How far a corner may stick out of its box, metres.
+    /// None for a body that is a leaf of its own.
+    tree: Option<Growth<'a>>,
+    /// How far what is in a box may stick out of it, metres.
     slack: f64,
 }
 
 impl<'a> Grove<'a> {
-    fn new(element: &'a Element<'a>, mesh: Option<&'a TriangleMesh>) -> Self {
+    fn new(body: &'a Body<'a>) -> Self {
+        let element = &body.element;
         let slack = BOX_ERROR_ULPS * UNIT_ROUNDOFF * element.reach;
-        Self { element, tree: mesh.map(TriangleMesh::tree), slack }
+        Self { element, tree: Growth::of_core(body.shape.core()), slack }
     }
 
-    fn children(&self, node: NodeId) -> Option<[NodeId; 2]> {
-        match self.tree?.nodes().content(node) {
-            Content::Children(children) => Some(children),
-            Content::Leaf(_) => None,
+    /// None stands for the body itself.
+    fn root(&self) -> Option<AnyNode> {
+        self.tree.as_ref().map(Tree::root)
+    }
+
+    fn inside(&self, node: Option<AnyNode>) -> Inside<Option<AnyNode>, Option<AnyLeaf>> {
+        let Some((tree, node)) = self.tree.as_ref().zip(node) else { return Inside::Leaf(None) };
+        match tree.inside(node) {
+            Inside::Children(children) => Inside::Children(children.map(Some)),
+            Inside::Leaf(leaf) => Inside::Leaf(Some(leaf)),
         }
     }
 
-    fn size(&self, node: NodeId) -> f64 {
-        self.tree.map_or(0.0, |tree| tree.nodes().size(node))
+    fn size(&self, node: Option<AnyNode>) -> f64 {
+        self.tree.as_ref().zip(node).map_or(0.0, |(tree, node)| tree.size(node))
     }
 
     /// What is around everything below a node.
-    fn outline(&self, node: NodeId) -> Element<'a> {
-        let boxed = |tree: &MeshTree| self.element.boxed(&tree.nodes().bounds(node), self.slack);
-        self.tree.map_or_else(|| self.element.clone(), boxed)
+    fn outline(&self, node: Option<AnyNode>) -> Element<'a> {
+        let boxed = |(tree, node): (&Growth, AnyNode)| self.element.boxed(&tree.bounds(node), self.slack);
+        self.tree.as_ref().zip(node).map_or_else(|| self.element.clone(), boxed)
     }
 
-    /// What is in a leaf.
-    fn leaf(&self, node: NodeId) -> Element<'a> {
-        let triangle = |tree: &'a MeshTree| match tree.nodes().content(node) {
-            Content::Leaf(leaf) => Some(self.element.triangle(*tree.corners(leaf), tree.number(leaf))),
-            Content::Children(_) => None,
-        };
-        self.tree.and_then(triangle).unwrap_or_else(|| self.element.clone())
+    fn leaf(&self, leaf: Option<AnyLeaf>) -> Element<'a> {
+        let made =
+            self.tree.as_ref().zip(leaf).and_then(|(tree, leaf)| {
+                Some(self.element.leaf(tree.core(leaf)?, tree.number(leaf).unwrap_or_default()))
+            });
+        made.unwrap_or_else(|| self.element.clone())
     }
 }

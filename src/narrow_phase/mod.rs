@@ -1,7 +1,7 @@
 //! How far apart two shapes are, as a proved bracket.
 //!
-//! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the trees of
-//! meshes (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
+//! [`separation`] is the door. Behind it, top down: `union` and `pieces` take compounds apart, `walk` goes down the `trees` of
+//! meshes, clouds and terrain (`course`, `box_gaps`, `leaves`, `triangles`; `wall` for half-spaces and planes), `solid` and `inside` see to what is within a
 //! closed mesh, `convex` takes a pair of cores, `unbounded` has the formula for half-spaces and planes.
 //!
 //! For a pair of cores `ladder` chooses the solver: a closed form (`segments`), `gjk` with or without `momentum` and then `epa`,
@@ -12,7 +12,7 @@
 //!
 //! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
 //! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
-//! [`cast_ray`] is the one for rays: `ray_forms` has formulas with their proofs, `ray_mesh` goes down the tree of a mesh.
+//! [`cast_ray`] is the one for rays: `ray_forms` has formulas with their proofs, `ray_trees` goes down the tree of a mesh.
 
 mod advancement;
 mod approach;
@@ -47,7 +47,7 @@ mod polytope;
 mod qp;
 mod ray;
 mod ray_forms;
-mod ray_mesh;
+mod ray_trees;
 mod revolution;
 mod sat;
 mod sat_boxes;
@@ -61,6 +61,7 @@ mod solid;
 mod solver;
 mod support;
 mod touching;
+mod trees;
 mod triangles;
 mod unbounded;
 mod union;

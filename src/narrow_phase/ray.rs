@@ -11,9 +11,10 @@ use super::element::Element;
 use super::impact::{NoImpact, Outcome};
 use super::outcome::{Bracket, Cost, Termination};
 use super::ray_forms::{self, Form};
-use super::ray_mesh;
+use super::ray_trees;
 use super::separation::separation;
 use super::support::radius;
+use super::trees::Growth;
 use super::{Goal, NoSeparation};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
 use crate::geometry::{Core, Part, Placement, Pose, Quaternion, Ray, RigidMotion, Shape, Vec3, length};
@@ -195,8 +196,8 @@ impl Search {
     }
 
     fn bounded(&mut self, local: &Local, shape: &Shape, element: &Element, goal: &RayGoal) -> Met {
-        if let Core::Mesh(mesh) = shape.core() {
-            return ray_mesh::cast(local, mesh, element, goal, &mut self.cost);
+        if let Some(tree) = Growth::of_core(shape.core()) {
+            return ray_trees::cast(local, shape.core(), &tree, element, goal, &mut self.cost);
         }
         match ray_forms::convex(local, element.core(), element.swept_radius) {
             Form::Known(met) => Met { number: element.number, ..met },

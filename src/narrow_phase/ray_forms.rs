@@ -7,7 +7,7 @@
 use super::impact::Outcome;
 use super::outcome::Termination;
 use super::ray::{Local, Met};
-use super::ray_mesh::{self, Crossing};
+use super::ray_trees::{self, Crossing};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::{Core, Vec3, length};
 
@@ -27,7 +27,11 @@ pub(super) fn convex(ray: &Local, core: &Core, radius: f64) -> Form {
     match core {
         Core::Point => ball(ray, radius),
         Core::Cuboid { half_extents } if radius == 0.0 => cuboid(ray, *half_extents),
-        Core::Triangle(corners) if radius == 0.0 => match ray_mesh::triangle(ray, corners) {
+        Core::Segment([p, q]) if p == q => {
+            let error = ray.error + 2.0 * UNIT_ROUNDOFF * (length(ray.start) + length(*p));
+            ball(&Local { start: ray.start - p, error, ..*ray }, radius)
+        }
+        Core::Triangle(corners) if radius == 0.0 => match ray_trees::triangle(ray, corners) {
             Crossing::Crosses(met) => Form::Known(met),
             Crossing::Misses => Form::Known(Met::nothing()),
             Crossing::Unknown => Form::Unknown,
@@ -43,6 +47,9 @@ pub(super) fn convex(ray: &Local, core: &Core, radius: f64) -> Form {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_)
         | Core::Compound(_) => Form::Unknown,
     }
 }

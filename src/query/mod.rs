@@ -11,17 +11,21 @@ mod contacts;
 mod context;
 mod item_batch;
 mod met;
+mod motion_course;
+mod motion_measure;
+mod motions;
 mod nearest_bodies;
 mod opponents;
 mod overlap;
 mod pairs;
 mod rays;
 mod request;
+mod robot_parts;
 mod search;
 mod states;
 mod verdict;
 
-pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
 pub use cast_answer::{Answers, CastHit, CastItem, CastVerdict, Grazed, NearestItem, OverlapItem, Overlapping};
 pub use cast_request::{
@@ -37,4 +41,4 @@ pub use item_batch::ItemBatch;
 pub use nearest_bodies::Neighbours;
 pub use overlap::Overlaps;
 pub use rays::Rays;
-pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};

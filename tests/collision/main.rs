@@ -10,6 +10,7 @@ mod hard_cases;
 mod impacts;
 mod known_failures;
 mod laws;
+mod many_pieces;
 mod meshes;
 mod oracle;
 mod pair_bytes;

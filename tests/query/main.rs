@@ -2,5 +2,7 @@
 
 mod batches;
 mod bodies;
+mod edges;
+mod motions;
 mod ur5;
 mod workload;

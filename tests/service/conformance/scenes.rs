@@ -19,6 +19,7 @@ through_every_door!(
     second_scene_of_a_name_is_refused,
     unknown_bodies_are_named,
     allowed_pair_is_not_reported,
+    broad_phase_is_chosen_with_the_scene_and_changes_no_answer,
 );
 
 fn limits() -> Limits {
@@ -144,4 +145,34 @@ async fn allowed_pair_is_not_reported(door: &impl Door) {
     assert_eq!(verdicts(&door.collide(question.clone()).await.unwrap()), [v1::Verdict::Free]);
     door.apply(apply(vec![entry(None)])).await.unwrap();
     assert_eq!(verdicts(&door.collide(question).await.unwrap()), [v1::Verdict::Collision]);
+}
+
+async fn broad_phase_is_chosen_with_the_scene_and_changes_no_answer(door: &impl Door) {
+    let chosen = |name: &str, kind: i32| v1::CreateSceneRequest { name: name.to_owned(), broad_phase: kind };
+    let kinds = [v1::BroadPhase::Tree, v1::BroadPhase::SweepAndPrune, v1::BroadPhase::Exhaustive];
+    let mut answers = Vec::new();
+    for kind in kinds {
+        let scene = kind.as_str_name();
+        let made = door.create(chosen(scene, kind.into())).await.unwrap();
+        assert_eq!((made.broad_phase(), made.robots), (kind, 0));
+        let balls =
+            (0..40).map(|i| add(&format!("ball {i}"), sphere(0.6), at(f64::from(i % 7), f64::from(i % 5), 0.0)));
+        let change = v1::ApplyRequest { scene: scene.to_owned(), ..apply(balls.collect()) };
+        door.apply(change).await.unwrap();
+        let contents = v1::GetSceneRequest { scene: scene.to_owned(), ..v1::GetSceneRequest::default() };
+        assert_eq!(door.get_scene(contents).await.unwrap().broad_phase(), kind);
+        let context = v1::Context { scene: scene.to_owned(), ..context() };
+        let question =
+            v1::CollideRequest { context: Some(context), ..collide(vec![all_pairs(), body(named("ball 3"))]) };
+        let mut answer = door.collide(question).await.unwrap();
+        answer.epoch = 0;
+        answer.cost = None;
+        answer.items.iter_mut().for_each(|item| item.cost = None);
+        assert!(answer.items[0].pairs.len() > 40, "{answer:?}");
+        answers.push(answer);
+    }
+    assert!(answers.iter().all(|answer| *answer == answers[0]));
+    assert_eq!(door.create(chosen("unsaid", 0)).await.unwrap().broad_phase(), v1::BroadPhase::Tree);
+    let refusal = door.create(chosen("unknown", 77)).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.field.as_str()), (Code::InvalidArgument, "broad_phase"), "{refusal:?}");
 }

@@ -2,6 +2,7 @@
 //! a checked value or an error that names the field.
 
 mod answer;
+mod fields;
 mod geometry;
 mod path;
 mod query;

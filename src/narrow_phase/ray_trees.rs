@@ -1,4 +1,4 @@
-//! Which triangle of a mesh does a ray meet first? Down the tree, nearest boxes first.
+//! Which part of a mesh, a point cloud or terrain does a ray meet first? Down its tree, nearest boxes first.
 //!
 //! A crossing is proved by the signs of volumes, each by more than what the places of the points may be off (`docs/derivations/mesh.md`,
 //! "Crossing"), and where it is by the plane of the triangle. A ray through an edge or a corner crosses no triangle for sure, but it does cross
@@ -10,12 +10,12 @@ use super::element::Element;
 use super::impact::Outcome;
 use super::outcome::{Cost, Termination};
 use super::ray::{Local, Met, RayGoal, advance, undecided};
+use super::ray_forms::{self, Form};
 use super::separation::separation;
+use super::trees::{Growth, Inside, Tree};
 use super::walk::NODES_PER_STOP;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::{
-    Aabb, Content, MOST_LEVELS, NodeId, OrientedBox, Placement, Pose, Quaternion, Shape, TriangleMesh, Vec3, length,
-};
+use crate::geometry::{Aabb, Core, OrientedBox, Placement, Pose, Quaternion, Shape, TriangleMesh, Vec3, length};
 
 /// What is told of a ray and a triangle.
 pub(super) enum Crossing {
@@ -33,49 +33,40 @@ const BOX_TEST_ULPS: f64 = 512.0;
 /// Patches are looked for around a ray among so many triangles at most: what meets in one corner is rarely more.
 const LARGEST_PATCH: usize = 256;
 
-/// The first triangle that the ray meets; where the mesh is solid, its inside counts.
-pub(super) fn cast(ray: &Local, mesh: &TriangleMesh, element: &Element, goal: &RayGoal, cost: &mut Cost) -> Met {
-    if mesh.is_solid()
+/// The first part that the ray meets; where a mesh is solid, its inside counts.
+pub(super) fn cast(ray: &Local, core: &Core, tree: &Growth, element: &Element, goal: &RayGoal, cost: &mut Cost) -> Met {
+    if let Core::Mesh(mesh) = core
+        && mesh.is_solid()
         && ray.offset == 0.0
         && let Some(met) = from_inside(ray, mesh, element, goal, cost)
     {
         return met;
     }
-    let tree = mesh.tree();
-    let nodes = tree.nodes();
     let mut first = Met::nothing();
     let mut lower = f64::INFINITY;
     let mut until = ray.length;
     let mut open_until = 0.0_f64;
     let mut open: Vec<(Met, [Vec3; 3])> = Vec::new();
     let grown = ray.error + element.swept_radius;
-    let mut waiting = [(0.0, NodeId::ROOT); MOST_LEVELS + 1];
-    let mut count = 1;
-    while count > 0 {
-        count -= 1;
-        let (from, node) = waiting[count];
+    let mut waiting = vec![(0.0, tree.root())];
+    while let Some((from, node)) = waiting.pop() {
         if from > until {
             continue;
         }
-        match nodes.content(node) {
-            Content::Leaf(leaf) => {
-                let corners = *tree.corners(leaf);
-                let number = element.triangle(corners, tree.number(leaf));
-                let met = if element.swept_radius == 0.0 {
-                    match triangle(ray, &corners) {
-                        Crossing::Crosses(met) => met,
-                        Crossing::Misses => continue,
-                        Crossing::Unknown => advance(ray, &number, goal, cost),
-                    }
-                } else {
-                    advance(ray, &number, goal, cost)
+        match tree.inside(node) {
+            Inside::Leaf(leaf) => {
+                let Some(inner) = tree.core(leaf) else { continue };
+                let part = element.leaf(inner, tree.number(leaf).unwrap_or_default());
+                let met = match ray_forms::convex(ray, part.core(), element.swept_radius) {
+                    Form::Known(met) => met,
+                    Form::Unknown => advance(ray, &part, goal, cost),
                 };
-                let met = Met { number: number.number, ..met };
+                let met = Met { number: part.number, ..met };
                 match met.outcome {
                     Outcome::Clear => continue,
                     Outcome::Undecided => {
                         open_until = open_until.max(met.upper);
-                        open.push((met, corners));
+                        open.extend(surface_of(part.core()).map(|corners| (met, corners)));
                     }
                     Outcome::Hit => until = until.min(met.upper),
                 }
@@ -84,17 +75,16 @@ pub(super) fn cast(ray: &Local, mesh: &TriangleMesh, element: &Element, goal: &R
                     first = met;
                 }
             }
-            Content::Children(children) => {
+            Inside::Children(children) => {
                 cost.nodes += 1;
                 if cost.nodes.is_multiple_of(NODES_PER_STOP) && (goal.stop)() {
                     return undecided(ray, Termination::TimeLimit);
                 }
-                let enters = children.map(|child| enters(ray, &nodes.bounds(child), grown));
+                let enters = children.map(|child| enters(ray, &tree.bounds(child), grown));
                 let nearer = usize::from(enters[1] < enters[0]);
                 for child in [1 - nearer, nearer] {
                     if enters[child] <= until {
-                        waiting[count] = (enters[child], children[child]);
-                        count += 1;
+                        waiting.push((enters[child], children[child]));
                     }
                 }
             }
@@ -137,6 +127,28 @@ fn patches(ray: &Local, open: &[(Met, [Vec3; 3])], first: &Met) -> Option<Met> {
         rest = later;
     }
     None
+}
+
+/// The triangle that a leaf is, or that covers a column from above: what patches are made of.
+fn surface_of(core: &Core) -> Option<[Vec3; 3]> {
+    match core {
+        Core::Triangle(corners) => Some(*corners),
+        Core::Column(column) => Some(column.top),
+        Core::Point
+        | Core::Cuboid { .. }
+        | Core::AxialSegment { .. }
+        | Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::Convex(_)
+        | Core::Segment(_)
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Compound(_) => None,
+    }
 }
 
 /// Hits before what is undecided, then what is sooner, then lesser numbers.
