@@ -113,6 +113,12 @@ impl DynamicTree {
         self.leaves[proxy.0].payload
     }
 
+    /// Bytes of this version, those it shares with others included.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.nodes.len() * size_of::<Node>() + self.leaves.len() * size_of::<Leaf>()
+    }
+
     /// All entries, in no order that means anything: number and tight box.
     pub fn iter(&self) -> impl Iterator<Item = (u64, Aabb)> + '_ {
         self.live_leaves().map(|leaf| (leaf.payload, leaf.tight))

@@ -9,21 +9,29 @@
 //! `far_apart` answer some verdicts before. What doubles leave open `escalation` hands to `revolution`, `double_double` and
 //! `exact`. Below lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a
 //! second door, for all touching triangles; [`separations`] is the first one for many pairs at once.
+//!
+//! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
+//! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
 
+mod advancement;
+mod approach;
 mod batch;
 mod box_gaps;
 mod bracketing;
 mod convex;
 mod course;
 mod double_double;
+mod element;
 mod epa;
 mod escalation;
 mod exact;
 mod far_apart;
+mod forecast;
 mod frank_wolfe;
 mod given;
 mod gjk;
 mod goal;
+mod impact;
 mod inside;
 mod ladder;
 mod least;
@@ -58,6 +66,7 @@ mod witness;
 
 pub use batch::{PairQuestion, separations};
 pub use goal::{Accuracy, Depth, Goal};
+pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
 pub use separation::{NoSeparation, separation, separation_again};

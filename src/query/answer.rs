@@ -196,6 +196,14 @@ pub enum Refused {
         /// What is wrong with it.
         problem: String,
     },
+    /// What changed since a revision is not known any more.
+    #[error("what changed since revision {asked} is not known any more; the oldest that can be asked is {oldest}")]
+    Gone {
+        /// The revision asked for.
+        asked: Revision,
+        /// The oldest that can be asked of this snapshot.
+        oldest: Revision,
+    },
     /// Something that is not in the scene.
     #[error("no {what} {name:?} in the scene (revision {revision})")]
     NotFound {

@@ -2,6 +2,9 @@
 
 mod answer;
 mod batch;
+mod changed_pairs;
+mod contact_tracker;
+mod contacts;
 mod context;
 mod motion_course;
 mod motion_measure;
@@ -15,4 +18,8 @@ mod verdict;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
+pub use contact_tracker::ContactTracker;
+pub use contacts::{
+    ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
+};
 pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};

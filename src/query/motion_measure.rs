@@ -207,7 +207,7 @@ impl<'a> Gauge<'a> {
             nearest.take(bracket, margin, unclaimed);
         };
         let reach = nearest.reach();
-        let stats = snapshot.tree().nearest(&self.placed.bounds[part], reach, |id, _| {
+        let stats = snapshot.broad_phase().nearest(&self.placed.bounds[part], reach, |id, _| {
             look(&mut nearest, BodyId(id));
             if stop() { -1.0 } else { nearest.reach() }
         });

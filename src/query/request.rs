@@ -2,7 +2,7 @@
 
 use crate::geometry::{Pose, Shape};
 use crate::narrow_phase::{Accuracy, Solver};
-use crate::scene::BodyId;
+use crate::scene::{BodyId, Revision};
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -160,6 +160,10 @@ impl CheckMotions {
 pub enum Subject {
     /// Every pair of bodies of the scene.
     All,
+    /// Every pair of bodies that changed after this revision: a side of it was added, moved, reshaped, put in other
+    /// layers or groups, or enabled, or an entry for pairs that speaks of it was made, replaced or taken back. Each pair
+    /// once.
+    ChangedSince(Revision),
     /// One body against the others.
     Body(BodyId),
     /// A shape that is not in the scene, placed in the world, against all bodies.

@@ -101,14 +101,14 @@ pub(super) fn against_scene(robot: &RobotParts, part: usize, search: &mut Search
     let snapshot = robot.snapshot;
     let one = robot.party(part, placed);
     let offer = |search: &mut Search, id: BodyId| {
-        let body = snapshot.body(id).expect("the tree holds bodies of the snapshot");
+        let body = snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
         if let Some(margin) = robot.margin(robot.parts[part].link, body) {
             let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
             search.offer(&one, &other, margin);
         }
     };
     let reach = search.reach();
-    let stats = snapshot.tree().nearest(&placed.bounds[part], reach, |id, _| {
+    let stats = snapshot.broad_phase().nearest(&placed.bounds[part], reach, |id, _| {
         offer(search, BodyId(id));
         search.reach()
     });

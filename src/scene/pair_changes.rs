@@ -15,8 +15,11 @@ impl Snapshot {
         limits: &Limits,
     ) -> Result<(), Fault> {
         let (a, b) = self.pair_of_keys(a, b, limits)?;
-        let existed = self.allowed.get(a, b).is_some();
-        self.count_entry(existed, allowed.is_some(), (a, b), limits)?;
+        let before = self.allowed.get(a, b);
+        self.count_entry(before.is_some(), allowed.is_some(), (a, b), limits)?;
+        if before != allowed {
+            self.changes.entry(a, b);
+        }
         self.allowed.set(a, b, allowed);
         Ok(())
     }
@@ -32,8 +35,11 @@ impl Snapshot {
         if let Some(margin) = margin {
             check_distance(margin, "margin")?;
         }
-        let existed = self.margins.get(a, b).is_some();
-        self.count_entry(existed, margin.is_some(), (a, b), limits)?;
+        let before = self.margins.get(a, b);
+        self.count_entry(before.is_some(), margin.is_some(), (a, b), limits)?;
+        if before != margin {
+            self.changes.entry(a, b);
+        }
         self.margins.set(a, b, margin);
         Ok(())
     }

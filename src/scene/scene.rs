@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::{BodyId, Edit, Epoch, NotKept, Refusal, Revision, Snapshot};
+use super::{BodyId, Edit, Epoch, NotKept, Refusal, Revision, SceneOptions, Snapshot};
 use crate::limits::{LimitExceeded, Limits};
 
 /// Builds with debug assertions look at every snapshot of a scene of up to so many bodies as a whole.
@@ -33,11 +33,17 @@ impl Scene {
         Self::with_limits(epoch, Limits::default())
     }
 
+    /// As [`Scene::with_options`], with the default options.
+    #[must_use]
+    pub fn with_limits(epoch: Epoch, limits: Limits) -> Self {
+        Self::with_options(epoch, limits, &SceneOptions::default())
+    }
+
     /// An empty scene at revision zero. Of the caps it holds those on edits, bodies, robots, entries for pairs, groups,
     /// names and snapshots.
     #[must_use]
-    pub fn with_limits(epoch: Epoch, limits: Limits) -> Self {
-        Self { limits, kept: VecDeque::from([Arc::new(Snapshot::empty(epoch))]) }
+    pub fn with_options(epoch: Epoch, limits: Limits, options: &SceneOptions) -> Self {
+        Self { limits, kept: VecDeque::from([Arc::new(Snapshot::empty(epoch, options))]) }
     }
 
     /// The latest snapshot.
@@ -87,6 +93,7 @@ impl Scene {
         }
         let revision = Revision(actual.0 + 1);
         next.settle(self.latest(), revision);
+        next.changes.close(revision, self.limits.snapshots_kept);
         debug_assert!(next.body_count() > VALIDATED_BODIES || next.validate() == Ok(()), "{:?}", next.validate());
         self.kept.push_back(Arc::new(next));
         while self.kept.len() > self.limits.snapshots_kept.max(1) {

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use rpds::HashTrieMapSync;
 
+use super::change_log::ChangeLog;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
-use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene};
-use crate::broad_phase::DynamicTree;
+use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene, SceneOptions};
+use crate::broad_phase::BroadPhase;
 
 /// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
 #[derive(Clone, Debug)]
@@ -22,7 +23,7 @@ pub struct Snapshot {
     pub(super) next_body: BodyId,
     pub(super) groups: Groups,
     /// Enabled bodies with bounds, by their ids.
-    pub(super) tree: DynamicTree,
+    pub(super) broad_phase: BroadPhase,
     /// Enabled bodies without bounds, sorted.
     pub(super) unbounded: Arc<Vec<BodyId>>,
     /// In the order of their names.
@@ -32,11 +33,12 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    pub(super) changes: ChangeLog,
 }
 
 impl Snapshot {
     /// The scene at the beginning of an epoch: empty, revision zero. The first body gets the id 1.
-    pub(super) fn empty(epoch: Epoch) -> Self {
+    pub(super) fn empty(epoch: Epoch, options: &SceneOptions) -> Self {
         Self {
             epoch,
             revision: Revision(0),
@@ -44,7 +46,7 @@ impl Snapshot {
             names: HashTrieMapSync::new_sync(),
             next_body: BodyId(1),
             groups: Groups::new(),
-            tree: DynamicTree::new(),
+            broad_phase: BroadPhase::new(options.broad_phase),
             unbounded: Arc::new(Vec::new()),
             robots: Arc::new(Vec::new()),
             next_link: 0,
@@ -52,6 +54,7 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            changes: ChangeLog::new(Revision(0)),
         }
     }
 
@@ -92,8 +95,8 @@ impl Snapshot {
 
     /// The enabled bodies that have bounds; a payload is the number of a [`BodyId`], a box is [`Body::bounds`].
     #[must_use]
-    pub fn tree(&self) -> &DynamicTree {
-        &self.tree
+    pub fn broad_phase(&self) -> &BroadPhase {
+        &self.broad_phase
     }
 
     /// The enabled bodies that have no bounds (half-spaces and planes), in the order of their ids.

@@ -16,7 +16,7 @@ use super::revision_rule::{Kept, RevisionRule, Rule};
 use super::scenes::SceneSummary;
 use super::{ServiceError, workers};
 use crate::limits::Limits;
-use crate::scene::{Applied, Edit, Epoch, Revision, Scene, Snapshot};
+use crate::scene::{Applied, Edit, Epoch, Revision, Scene, SceneOptions, Snapshot};
 
 /// A change that is asked for.
 #[derive(Clone, Debug)]
@@ -59,8 +59,8 @@ struct Writer {
 }
 
 impl SceneCell {
-    pub fn new(name: String, epoch: Epoch, limits: &Limits) -> Self {
-        let scene = Scene::with_limits(epoch, limits.clone());
+    pub fn new(name: String, epoch: Epoch, limits: &Limits, options: &SceneOptions) -> Self {
+        let scene = Scene::with_options(epoch, limits.clone(), options);
         let snapshot = scene.snapshot();
         let head = watch::Sender::new(Head::At(snapshot.revision()));
         let keys = RememberedKeys::new(limits.idempotency_keys_kept);
@@ -82,7 +82,8 @@ impl SceneCell {
             epoch: self.epoch,
             revision: latest.revision(),
             bodies: latest.body_count(),
-            robots: 0, /*latest.robots().len()*/
+            robots: latest.robots().count(),
+            broad_phase: latest.broad_phase().kind(),
         }
     }
 

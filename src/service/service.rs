@@ -17,7 +17,7 @@ use super::scenes::{SceneSummary, Scenes};
 use super::view::View;
 use super::workers::{Workers, prepare};
 use crate::limits::Limits;
-use crate::scene::{Applied, Epoch, Revision};
+use crate::scene::{Applied, Epoch, Revision, SceneOptions};
 
 /// What a service is made with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -140,9 +140,9 @@ impl Service {
     ///
     /// # Errors
     /// The name cannot be or is taken, or there are too many scenes.
-    pub fn create_scene(&self, name: &str) -> Result<SceneSummary, ServiceError> {
+    pub fn create_scene(&self, name: &str, options: &SceneOptions) -> Result<SceneSummary, ServiceError> {
         self.check_open()?;
-        self.scenes.create(name)
+        self.scenes.create(name, options)
     }
 
     /// All scenes, in the order of their names.

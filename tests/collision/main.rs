@@ -7,6 +7,7 @@ mod closed_forms;
 mod early_outs;
 mod extremes;
 mod hard_cases;
+mod impacts;
 mod known_failures;
 mod laws;
 mod meshes;

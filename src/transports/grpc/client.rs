@@ -204,7 +204,7 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub async fn create_scene(&self, name: &str) -> Result<Epoch, ClientError> {
-        let request = v1::CreateSceneRequest { name: name.to_owned() };
+        let request = v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() };
         let scene = self.scenes.clone().create_scene(request).await?.into_inner().scene;
         Ok(Epoch(scene.ok_or(ClientError::Missing("scene"))?.epoch))
     }

@@ -16,7 +16,9 @@ impl Scenes for Handlers {
         &self,
         request: Request<v1::CreateSceneRequest>,
     ) -> Result<Response<v1::CreateSceneResponse>, Status> {
-        let created = self.service.create_scene(&request.into_inner().name);
+        let request = request.into_inner();
+        let options = from_proto::scene_options(&request);
+        let created = options.and_then(|options| self.service.create_scene(&request.name, &options));
         respond(created.map(|scene| v1::CreateSceneResponse { scene: Some(to_proto::scene_summary(&scene)) }))
     }
 

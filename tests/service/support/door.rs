@@ -50,7 +50,7 @@ pub type Told<T> = Result<T, Refusal>;
 #[allow(async_fn_in_trait, reason = "the tests know both implementations")]
 pub trait Door {
     async fn open(limits: Limits) -> Self;
-    async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary>;
+    async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary>;
     async fn delete_scene(&self, name: &str) -> Told<v1::SceneSummary>;
     async fn get_scene(&self, request: v1::GetSceneRequest) -> Told<v1::SceneContents>;
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse>;
@@ -59,6 +59,11 @@ pub trait Door {
     async fn check_states(&self, request: v1::CheckStatesRequest) -> Told<v1::Answer>;
     async fn collide(&self, request: v1::CollideRequest) -> Told<v1::Answer>;
     async fn distance(&self, request: v1::DistanceRequest) -> Told<v1::Answer>;
+
+    /// A scene with the default options.
+    async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
+        self.create(v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() }).await
+    }
 }
 
 /// No socket: messages are decoded and encoded, and nothing else.
@@ -84,8 +89,9 @@ impl Door for InProcess {
         Self { service: Service::new(&Config { threads: 2, limits }).unwrap() }
     }
 
-    async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
-        Ok(to_proto::scene_summary(&self.service.create_scene(name)?))
+    async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary> {
+        let options = from_proto::scene_options(&request)?;
+        Ok(to_proto::scene_summary(&self.service.create_scene(&request.name, &options)?))
     }
 
     async fn delete_scene(&self, name: &str) -> Told<v1::SceneSummary> {
@@ -166,8 +172,7 @@ impl Door for Grpc {
         Self { daemon, channel }
     }
 
-    async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
-        let request = v1::CreateSceneRequest { name: name.to_owned() };
+    async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary> {
         Ok(ScenesClient::new(self.channel.clone()).create_scene(request).await?.into_inner().scene.unwrap())
     }
 

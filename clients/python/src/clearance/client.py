@@ -65,10 +65,15 @@ class Client:
         with translated():
             return self._server.GetServerInfo(service.GetServerInfoRequest(), timeout=self._timeout)
 
-    def create_scene(self, name: str) -> Scene:
-        """A new, empty scene."""
+    def create_scene(self, name: str, *, broad_phase: str = "tree") -> Scene:
+        """A new, empty scene.
+
+        `broad_phase` says how bodies are found that meet: `tree`, `sweep_and_prune` or `exhaustive`. No answer depends
+        on it; docs/broad_phase.md says when which one is faster.
+        """
+        request = service.CreateSceneRequest(name=name, broad_phase=_broad_phase(broad_phase))
         with translated():
-            self._scenes.CreateScene(service.CreateSceneRequest(name=name), timeout=self._timeout)
+            self._scenes.CreateScene(request, timeout=self._timeout)
         return Scene(self, name)
 
     def scene(self, name: str) -> Scene:
@@ -294,6 +299,14 @@ def _wants(want: str) -> query.Wants:
     if want not in known:
         raise ValueError(f"want: is {want!r}, known are {', '.join(known)}")
     return known[want]
+
+
+def _broad_phase(name: str) -> scene_pb2.BroadPhase:
+    """`tree` is BROAD_PHASE_TREE."""
+    known = {key.removeprefix("BROAD_PHASE_").lower(): number for key, number in scene_pb2.BroadPhase.items() if number}
+    if name not in known:
+        raise ValueError(f"broad_phase: is {name!r}, known are {', '.join(known)}")
+    return known[name]
 
 
 def _solver(name: str) -> query.Solver:

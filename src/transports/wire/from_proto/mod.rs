@@ -11,6 +11,6 @@ mod scene;
 pub use answer::{NotAnAnswer, answer};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
-pub use scene::change;
+pub use scene::{change, scene_options};
 
 use path::Path;

@@ -114,6 +114,7 @@ fn pair_query(
         let path = Path::root_item("items", index);
         match path.required(item.kind.as_ref())? {
             v1::subject::Kind::AllPairs(v1::AllPairs {}) => Ok(Subject::All),
+            v1::subject::Kind::ChangedSince(since) => Ok(Subject::ChangedSince(Revision(since.revision))),
             v1::subject::Kind::Body(body) => Ok(Subject::Body(body_id(&path.field("body"), Some(body), snapshot)?)),
             v1::subject::Kind::Shape(placed) => {
                 let path = path.field("shape");

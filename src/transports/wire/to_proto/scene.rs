@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::count;
 use super::geometry::{aabb, pose, shape};
 use crate::limits::Limit;
-use crate::scene::{Body, BodyRef, NewBody, Revision, RobotInScene, Snapshot};
+use crate::scene::{Body, BodyRef, BroadPhaseKind, NewBody, Revision, RobotInScene, Snapshot};
 use crate::service::{Changed, Door, Robots, SceneSummary};
 use crate::transports::wire::v1;
 
@@ -18,6 +18,7 @@ pub fn scene_summary(summary: &SceneSummary) -> v1::SceneSummary {
         revision: summary.revision.0,
         bodies: count(summary.bodies),
         robots: count(summary.robots),
+        broad_phase: broad_phase(summary.broad_phase),
     }
 }
 
@@ -36,7 +37,16 @@ pub fn scene_contents(name: &str, snapshot: &Snapshot, oldest: Revision, robots:
         oldest_revision: oldest.0,
         bodies: snapshot.bodies().map(|b| body(b)).collect(),
         robots: snapshot.robots().map(robot).collect(),
+        broad_phase: broad_phase(snapshot.broad_phase().kind()),
     }
+}
+
+fn broad_phase(kind: BroadPhaseKind) -> i32 {
+    i32::from(match kind {
+        BroadPhaseKind::Tree => v1::BroadPhase::Tree,
+        BroadPhaseKind::SweepAndPrune => v1::BroadPhase::SweepAndPrune,
+        BroadPhaseKind::Exhaustive => v1::BroadPhase::Exhaustive,
+    })
 }
 
 fn body(body: &Body) -> v1::Body {

@@ -44,10 +44,12 @@ ERROR_REASON_INTERNAL: ErrorReason
 ERROR_REASON_KEY_REUSED: ErrorReason
 
 class CreateSceneRequest(_message.Message):
-    __slots__ = ("name",)
+    __slots__ = ("name", "broad_phase")
     NAME_FIELD_NUMBER: _ClassVar[int]
+    BROAD_PHASE_FIELD_NUMBER: _ClassVar[int]
     name: str
-    def __init__(self, name: _Optional[str] = ...) -> None: ...
+    broad_phase: _scene_pb2.BroadPhase
+    def __init__(self, name: _Optional[str] = ..., broad_phase: _Optional[_Union[_scene_pb2.BroadPhase, str]] = ...) -> None: ...
 
 class CreateSceneResponse(_message.Message):
     __slots__ = ("scene",)
