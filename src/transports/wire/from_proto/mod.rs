@@ -12,6 +12,6 @@ mod scene;
 pub use answer::{NotAnAnswer, answer};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
-pub use scene::{change, scene_options};
+pub use scene::{BodyPage, body_page, change, scene_options};
 
 use path::Path;
