@@ -2,5 +2,8 @@
 
 mod batches;
 mod bodies;
+mod changed_since;
+mod contacts;
+mod moving_scene;
 mod ur5;
 mod workload;
