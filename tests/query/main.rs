@@ -2,6 +2,7 @@
 
 mod batches;
 mod bodies;
+mod casts;
 mod edges;
 mod motions;
 mod ur5;
