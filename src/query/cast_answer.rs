@@ -164,6 +164,8 @@ pub struct Answers<T> {
     pub items: Vec<T>,
     /// The time ran out before every item was looked at; those are not run.
     pub out_of_time: bool,
+    /// How many items were looked at.
+    pub answered: usize,
 }
 
 /// Why something was left open, by what ended the work.

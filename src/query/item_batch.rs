@@ -27,9 +27,9 @@ pub trait ItemBatch: Sync {
     /// What stands for an item that was not looked at.
     fn not_run(&self) -> Self::Item;
 
-    /// Answers the items of a range, and says whether the time ran out. `stop` is asked before each item; an item that it cut short is no
-    /// answer.
-    fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> (Vec<Self::Item>, bool) {
+    /// Answers the items of a range, and says how many of them were looked at. `stop` is asked before each item; an item that it cut short is
+    /// no answer.
+    fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> (Vec<Self::Item>, usize) {
         let count = range.len();
         let mut items = Vec::with_capacity(count);
         for index in range {
@@ -42,20 +42,21 @@ pub trait ItemBatch: Sync {
             }
             items.push(item);
         }
-        let out_of_time = items.len() < count;
+        let answered = items.len();
         items.resize_with(count, || self.not_run());
-        (items, out_of_time)
+        (items, answered)
     }
 
     /// The answers, from those to consecutive ranges that cover all items.
-    fn join(&self, parts: impl IntoIterator<Item = (Vec<Self::Item>, bool)>) -> Answers<Self::Item> {
+    fn join(&self, parts: impl IntoIterator<Item = (Vec<Self::Item>, usize)>) -> Answers<Self::Item> {
         let (epoch, revision) = (self.snapshot().epoch(), self.snapshot().revision());
-        let mut answers = Answers { epoch, revision, items: Vec::with_capacity(self.len()), out_of_time: false };
-        for (items, out_of_time) in parts {
-            answers.items.extend(items);
-            answers.out_of_time |= out_of_time;
+        let mut items = Vec::with_capacity(self.len());
+        let mut answered = 0;
+        for (part, looked_at) in parts {
+            items.extend(part);
+            answered += looked_at;
         }
-        answers
+        Answers { epoch, revision, out_of_time: answered < items.len(), answered, items }
     }
 
     /// Everything in one go.

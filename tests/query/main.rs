@@ -2,6 +2,7 @@
 
 mod batches;
 mod bodies;
+mod casts;
 mod changed_since;
 mod contacts;
 mod edges;

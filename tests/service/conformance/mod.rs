@@ -3,6 +3,7 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod casts;
 mod fields;
 mod questions;
 mod revisions;

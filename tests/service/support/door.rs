@@ -60,6 +60,11 @@ pub trait Door {
     async fn check_states(&self, request: v1::CheckStatesRequest) -> Told<v1::Answer>;
     async fn collide(&self, request: v1::CollideRequest) -> Told<v1::Answer>;
     async fn distance(&self, request: v1::DistanceRequest) -> Told<v1::Answer>;
+    async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse>;
+    async fn cast_shapes(&self, request: v1::CastShapesRequest) -> Told<v1::CastShapesResponse>;
+    async fn check_moving_pairs(&self, request: v1::CheckMovingPairsRequest) -> Told<v1::CheckMovingPairsResponse>;
+    async fn overlap(&self, request: v1::OverlapRequest) -> Told<v1::OverlapResponse>;
+    async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse>;
 
     /// A scene with the default options.
     async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
@@ -82,6 +87,19 @@ impl InProcess {
         let patience = from_proto::patience(None, context.as_ref())?;
         let target = from_proto::target(context.as_ref())?;
         Ok(self.service.ask(&target, patience, move |view| Ok(to_proto::answer(&question(view)?, form))).await?)
+    }
+}
+
+impl InProcess {
+    /// A question whose answer is a message of its own.
+    async fn ask_for<T: Send + 'static>(
+        &self,
+        context: Option<v1::Context>,
+        question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+    ) -> Told<T> {
+        let patience = from_proto::patience(None, context.as_ref())?;
+        let target = from_proto::target(context.as_ref())?;
+        Ok(self.service.ask(&target, patience, question).await?)
     }
 }
 
@@ -162,6 +180,50 @@ impl Door for InProcess {
         })
         .await
     }
+
+    async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse> {
+        self.ask_for(request.context.clone(), move |view| {
+            let answers = view.cast_rays(&from_proto::cast_rays(&request, view.snapshot())?)?;
+            Ok(to_proto::cast_rays_response(&answers))
+        })
+        .await
+    }
+
+    async fn cast_shapes(&self, request: v1::CastShapesRequest) -> Told<v1::CastShapesResponse> {
+        let library = Arc::clone(self.service.library());
+        self.ask_for(request.context.clone(), move |view| {
+            let answers = view.cast_shapes(&from_proto::cast_shapes(&request, view.snapshot(), &library)?)?;
+            Ok(to_proto::cast_shapes_response(&answers))
+        })
+        .await
+    }
+
+    async fn check_moving_pairs(&self, request: v1::CheckMovingPairsRequest) -> Told<v1::CheckMovingPairsResponse> {
+        let library = Arc::clone(self.service.library());
+        self.ask_for(request.context.clone(), move |view| {
+            let asked = from_proto::check_moving_pairs(&request, view.snapshot(), &library)?;
+            Ok(to_proto::check_moving_pairs_response(&view.check_moving_pairs(&asked)?))
+        })
+        .await
+    }
+
+    async fn overlap(&self, request: v1::OverlapRequest) -> Told<v1::OverlapResponse> {
+        let library = Arc::clone(self.service.library());
+        self.ask_for(request.context.clone(), move |view| {
+            let answers = view.overlap(&from_proto::overlap(&request, view.snapshot(), &library)?)?;
+            Ok(to_proto::overlap_response(&answers))
+        })
+        .await
+    }
+
+    async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
+        let library = Arc::clone(self.service.library());
+        self.ask_for(request.context.clone(), move |view| {
+            let answers = view.nearest_bodies(&from_proto::nearest_bodies(&request, view.snapshot(), &library)?)?;
+            Ok(to_proto::nearest_bodies_response(&answers))
+        })
+        .await
+    }
 }
 
 /// HTTP/2 over loopback.
@@ -221,5 +283,25 @@ impl Door for Grpc {
 
     async fn distance(&self, request: v1::DistanceRequest) -> Told<v1::Answer> {
         Ok(QueriesClient::new(self.channel.clone()).distance(request).await?.into_inner().answer.unwrap())
+    }
+
+    async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).cast_rays(request).await?.into_inner())
+    }
+
+    async fn cast_shapes(&self, request: v1::CastShapesRequest) -> Told<v1::CastShapesResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).cast_shapes(request).await?.into_inner())
+    }
+
+    async fn check_moving_pairs(&self, request: v1::CheckMovingPairsRequest) -> Told<v1::CheckMovingPairsResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).check_moving_pairs(request).await?.into_inner())
+    }
+
+    async fn overlap(&self, request: v1::OverlapRequest) -> Told<v1::OverlapResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).overlap(request).await?.into_inner())
+    }
+
+    async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).nearest_bodies(request).await?.into_inner())
     }
 }

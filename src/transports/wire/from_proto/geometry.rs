@@ -33,11 +33,11 @@ pub fn pose(path: &Path<'_>, pose: Option<&v1::Pose>) -> Result<Pose, ServiceErr
 }
 
 /// A point or direction; the numbers are checked where they are used.
-fn vec3(v: &v1::Vec3) -> Vec3 {
+pub(super) fn vec3(v: &v1::Vec3) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
+pub(super) fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
     path.required(v).map(vec3)
 }
 

@@ -2,6 +2,7 @@
 //! a checked value or an error that names the field.
 
 mod answer;
+mod cast;
 mod fields;
 mod geometry;
 mod path;
@@ -10,6 +11,7 @@ mod robot;
 mod scene;
 
 pub use answer::{NotAnAnswer, answer};
+pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::{BodyPage, body_page, change, scene_options};
