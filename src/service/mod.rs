@@ -8,6 +8,7 @@ mod assets;
 mod deadline;
 mod error;
 mod library;
+mod published;
 mod remembered_keys;
 mod revision_rule;
 mod robots;
