@@ -3,6 +3,7 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod contacts;
 mod questions;
 mod revisions;
 mod robots;

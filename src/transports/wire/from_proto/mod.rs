@@ -2,6 +2,7 @@
 //! a checked value or an error that names the field.
 
 mod answer;
+mod contact;
 mod geometry;
 mod path;
 mod query;
@@ -9,6 +10,7 @@ mod robot;
 mod scene;
 
 pub use answer::{NotAnAnswer, answer};
+pub use contact::contact_question;
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::change;

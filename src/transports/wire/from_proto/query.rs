@@ -131,7 +131,7 @@ fn pair_query(
 }
 
 /// What every question carries; the numbers in it are checked by the query itself.
-fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
+pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
     let path = Path::root("context");
     let context = path.required(context)?;
     let wants = context.wants.unwrap_or_default();
@@ -212,6 +212,6 @@ fn mode(number: i32) -> Result<Mode, ServiceError> {
     }
 }
 
-fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
+pub(super) fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
     path.invalid(format!("has the unknown value {number}"))
 }

@@ -79,7 +79,7 @@ fn bulk_brackets(
     })
 }
 
-fn pair(pair: &PairAnswer) -> v1::PairAnswer {
+pub(super) fn pair(pair: &PairAnswer) -> v1::PairAnswer {
     let (verdict, indeterminacy) = verdict(pair.verdict);
     v1::PairAnswer {
         a: Some(side(&pair.a)),
@@ -149,7 +149,7 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
     v1::Bracket { lower: bracket.lower, upper: bracket.upper }
 }
 
-fn cost(cost: Cost) -> v1::Cost {
+pub(super) fn cost(cost: Cost) -> v1::Cost {
     let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = cost;
     v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }
 }

@@ -1,6 +1,7 @@
 //! What does something look like on the wire? Every conversion from plain structs to messages; none can fail.
 
 mod answer;
+mod contact;
 mod count;
 mod geometry;
 mod question;
@@ -8,6 +9,7 @@ mod robot;
 mod scene;
 
 pub use answer::answer;
+pub use contact::contact_messages;
 pub use geometry::{pose, shape};
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};
