@@ -43,6 +43,10 @@ pub struct Limits {
     pub max_mesh_triangles: usize,
     /// Parts of one compound.
     pub max_compound_parts: usize,
+    /// Samples of one height field.
+    pub max_height_samples: usize,
+    /// Points of one point cloud.
+    pub max_cloud_points: usize,
     /// Groups of one body.
     pub max_groups: usize,
     /// Size of one uploaded file, bytes.
@@ -57,6 +61,10 @@ pub struct Limits {
     pub max_queries_in_flight: usize,
     /// Changes of one scene waiting for their turn.
     pub max_queued_writes: usize,
+    /// Callers that watch contacts, over all scenes.
+    pub max_watchers: usize,
+    /// Pairs in contact or undecided that one watcher may have.
+    pub max_contacts: usize,
     /// Uploads and robot loadings under way.
     pub max_uploads_in_flight: usize,
     /// Longest time a question may take, seconds.
@@ -83,6 +91,8 @@ impl Default for Limits {
             max_hull_points: 100_000,
             max_mesh_triangles: 2_000_000,
             max_compound_parts: 10_000,
+            max_height_samples: 20_000_000,
+            max_cloud_points: 5_000_000,
             max_groups: 64,
             max_asset_bytes: 256 << 20,
             max_total_asset_bytes: 2 << 30,
@@ -90,6 +100,8 @@ impl Default for Limits {
             max_name_bytes: 256,
             max_queries_in_flight: 64,
             max_queued_writes: 64,
+            max_watchers: 32,
+            max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
         }
@@ -110,6 +122,7 @@ pub struct Limit {
 }
 
 const EXHAUSTED: &str = "RESOURCE_EXHAUSTED naming limit, asked and allowed";
+const EXHAUSTED_AT_THE_END: &str = "the stream ends with RESOURCE_EXHAUSTED naming limit, asked and allowed";
 
 impl Limits {
     /// Every cap, in the order of the fields.
@@ -134,6 +147,8 @@ impl Limits {
             max_hull_points,
             max_mesh_triangles,
             max_compound_parts,
+            max_height_samples,
+            max_cloud_points,
             max_groups,
             max_asset_bytes,
             max_total_asset_bytes,
@@ -141,6 +156,8 @@ impl Limits {
             max_name_bytes,
             max_queries_in_flight,
             max_queued_writes,
+            max_watchers,
+            max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
         } = *self;
@@ -173,6 +190,8 @@ impl Limits {
             row("max_hull_points", max_hull_points, "points per hull", EXHAUSTED),
             row("max_mesh_triangles", max_mesh_triangles, "triangles per mesh", EXHAUSTED),
             row("max_compound_parts", max_compound_parts, "parts per compound", EXHAUSTED),
+            row("max_height_samples", max_height_samples, "samples per height field", EXHAUSTED),
+            row("max_cloud_points", max_cloud_points, "points per point cloud", EXHAUSTED),
             row("max_groups", max_groups, "groups per body", EXHAUSTED),
             row("max_asset_bytes", max_asset_bytes, "bytes per uploaded file", EXHAUSTED),
             row("max_total_asset_bytes", max_total_asset_bytes, "bytes of all uploaded files", EXHAUSTED),
@@ -180,6 +199,8 @@ impl Limits {
             row("max_name_bytes", max_name_bytes, "bytes per name", EXHAUSTED),
             row("max_queries_in_flight", max_queries_in_flight, "questions at a time", EXHAUSTED),
             row("max_queued_writes", max_queued_writes, "waiting changes per scene", EXHAUSTED),
+            row("max_watchers", max_watchers, "watchers at a time", EXHAUSTED),
+            row("max_contacts", max_contacts, "contacts per watcher", EXHAUSTED_AT_THE_END),
             row("max_uploads_in_flight", max_uploads_in_flight, "uploads at a time", EXHAUSTED),
             row(
                 "max_deadline_seconds",

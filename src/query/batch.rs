@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
+use super::motions::Motions;
 use super::pairs::Pairs;
-use super::request::{CheckStates, Mode, PairQuery};
+use super::request::{CheckMotions, CheckStates, Mode, PairQuery};
 use super::states::States;
 use crate::narrow_phase::Cost;
 use crate::scene::Snapshot;
@@ -19,6 +20,7 @@ pub struct Prepared<'a> {
 
 enum Question<'a> {
     States(States<'a>),
+    Motions(Motions<'a>),
     Pairs(Pairs<'a>),
 }
 
@@ -35,6 +37,16 @@ impl<'a> Prepared<'a> {
     /// A context that cannot be, a robot that is not in the scene, positions that are no whole number of states.
     pub fn check_states(snapshot: &'a Snapshot, request: &'a CheckStates) -> Result<Self, Refused> {
         let question = Question::States(States::new(snapshot, request)?);
+        Ok(Self { snapshot, mode: request.mode, question })
+    }
+
+    /// Is the robot free all along these motions?
+    ///
+    /// # Errors
+    /// A context, resolution or number of states that cannot be, a robot that is not in the scene or does not move, positions
+    /// that are no whole number of motions.
+    pub fn check_motions(snapshot: &'a Snapshot, request: &'a CheckMotions) -> Result<Self, Refused> {
+        let question = Question::Motions(Motions::new(snapshot, request)?);
         Ok(Self { snapshot, mode: request.mode, question })
     }
 
@@ -61,6 +73,7 @@ impl<'a> Prepared<'a> {
     pub fn len(&self) -> usize {
         match &self.question {
             Question::States(states) => states.len(),
+            Question::Motions(motions) => motions.len(),
             Question::Pairs(pairs) => pairs.len(),
         }
     }
@@ -80,6 +93,7 @@ impl<'a> Prepared<'a> {
                 let mut scratch = states.scratch();
                 self.run_items(range, stop, |i| states.answer(i, &mut scratch, stop))
             }
+            Question::Motions(motions) => self.run_items(range, stop, |i| motions.answer(i, stop)),
             Question::Pairs(pairs) => self.run_items(range, stop, |i| pairs.answer(i, stop)),
         }
     }

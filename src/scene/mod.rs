@@ -6,6 +6,7 @@
 mod body;
 mod body_changes;
 mod change;
+mod change_log;
 mod edit;
 mod groups;
 mod id;
@@ -27,6 +28,7 @@ mod validate;
 mod tests;
 
 pub use body::Body;
+pub use change_log::{BodyChange, ChangeKinds, Changes, RobotChange};
 pub use edit::{BodyRef, Edit, NewBody};
 pub use id::{BodyId, Epoch, Revision};
 pub use memory::Memory;

@@ -15,8 +15,11 @@ impl Snapshot {
         limits: &Limits,
     ) -> Result<(), Fault> {
         let (a, b) = self.pair_of_keys(a, b, limits)?;
-        let existed = self.allowed.get(a, b).is_some();
-        self.count_entry(existed, allowed.is_some(), (a, b), limits)?;
+        let before = self.allowed.get(a, b);
+        self.count_entry(before.is_some(), allowed.is_some(), (a, b), limits)?;
+        if before != allowed {
+            self.changes.entry(a, b);
+        }
         self.allowed.set(a, b, allowed);
         Ok(())
     }
@@ -34,6 +37,9 @@ impl Snapshot {
         }
         let before = self.margins.get(a, b);
         self.count_entry(before.is_some(), margin.is_some(), (a, b), limits)?;
+        if before != margin {
+            self.changes.entry(a, b);
+        }
         self.margins.set(a, b, margin);
         // Only where the largest went are all entries looked at again.
         self.largest_margin = self.largest_margin.max(margin.unwrap_or(0.0));

@@ -161,7 +161,7 @@ fn value_in<V: Copy>(row: &[(PartyKey, V)], party: PartyKey) -> Option<V> {
 
 /// The parties that speak of a body or link, each with how far it is from naming it alone: 0 itself, 1 its groups or
 /// its robot, 2 everything.
-fn parties_of(member: Member<'_>) -> impl Iterator<Item = (PartyKey, usize)> {
+pub(super) fn parties_of(member: Member<'_>) -> impl Iterator<Item = (PartyKey, usize)> {
     let many = member.many.iter().map(|party| (*party, 1));
     std::iter::once((member.one, 0)).chain(many).chain(std::iter::once((PartyKey::EVERYTHING, 2)))
 }

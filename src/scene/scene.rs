@@ -96,6 +96,7 @@ impl Scene {
         }
         let revision = Revision(actual.0 + 1);
         next.settle(self.latest(), revision);
+        next.changes.close(revision, self.limits.snapshots_kept);
         debug_assert!(next.body_count() > VALIDATED_BODIES || next.validate() == Ok(()), "{:?}", next.validate());
         next.count_written(added.len());
         self.written += next.written();

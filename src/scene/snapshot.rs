@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use rpds::HashTrieMapSync;
 
+use super::change_log::ChangeLog;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
@@ -34,6 +35,7 @@ pub struct Snapshot {
     pub(super) largest_margin: f64,
     /// An entry that may have had the largest margin was changed in this draft.
     pub(super) largest_margin_gone: bool,
+    pub(super) changes: ChangeLog,
     /// Bytes that the edits wrote which led here.
     pub(super) written: usize,
 }
@@ -57,6 +59,7 @@ impl Snapshot {
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
             largest_margin_gone: false,
+            changes: ChangeLog::new(Revision(0)),
             written: 0,
         }
     }

@@ -52,7 +52,8 @@ impl Snapshot {
         let unbounded = self.bodies().filter(|body| body.enabled && body.bounds.is_none()).map(|body| body.id);
         check(unbounded.eq(self.unbounded.iter().copied()), "the list of bodies without bounds is not right")?;
         self.check_robots()?;
-        self.check_entries()
+        self.check_entries()?;
+        self.changes.defect(self.revision).map_or(Ok(()), |what| check(false, what))
     }
 
     fn check_body(&self, body: &Body) -> Result<(), &'static str> {

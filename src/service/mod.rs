@@ -5,6 +5,7 @@
 
 mod admission;
 mod assets;
+mod contact_watch;
 mod deadline;
 mod error;
 mod library;
@@ -21,6 +22,7 @@ mod view;
 mod workers;
 
 pub use assets::{ContentHash, NotAHash, Stored, Upload};
+pub use contact_watch::ContactWatch;
 pub use deadline::Patience;
 pub use error::ServiceError;
 pub use library::{Library, MeshReading, UnusableMesh};

@@ -124,6 +124,22 @@ impl SceneCell {
         if self.published.is_deleted() { Err(self.not_found()) } else { self.published.find(rule) }
     }
 
+    /// The newest snapshot, once it is newer than `told`; with revisions that come in quick succession not the next.
+    pub async fn newer_than(&self, told: Revision) -> Result<Arc<Snapshot>, ServiceError> {
+        let mut head = self.head.subscribe();
+        loop {
+            head.mark_unchanged();
+            if self.published.is_deleted() {
+                return Err(self.not_found());
+            }
+            let latest = self.latest();
+            if latest.revision() > told {
+                return Ok(latest);
+            }
+            head.changed().await.map_err(|_| self.not_found())?;
+        }
+    }
+
     /// Makes a change, after those that came before.
     pub async fn apply(self: &Arc<Self>, change: Change, stop: Stop, turn: Permit) -> Result<Applied, ServiceError> {
         self.check_epoch(change.expected_epoch)?;

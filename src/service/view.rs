@@ -11,6 +11,10 @@ use super::ServiceError;
 use super::deadline::Stop;
 use crate::limits::{LimitExceeded, Limits};
 use crate::query::{Answer, CheckStates, Context, PairQuery, Part, Prepared, Verdict};
+use crate::query::{
+    Answers, CastItem, CastRays, CastShapes, Casts, CheckMovingPairs, ItemBatch, MovingPairs, NearestBodies,
+    NearestItem, Neighbours, Overlap, OverlapItem, Overlaps, Rays,
+};
 use crate::scene::Snapshot;
 
 /// A snapshot that is being asked. It exists only on the threads that answer questions.
@@ -56,6 +60,49 @@ impl View {
     pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
         self.answer(&Prepared::distance(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn cast_rays(&self, question: &CastRays) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&Rays::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn cast_shapes(&self, question: &CastShapes) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&Casts::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn check_moving_pairs(&self, question: &CheckMovingPairs) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&MovingPairs::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn overlap(&self, question: &Overlap) -> Result<Answers<OverlapItem>, ServiceError> {
+        self.answer_each(&Overlaps::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn nearest_bodies(&self, question: &NearestBodies) -> Result<Answers<NearestItem>, ServiceError> {
+        LimitExceeded::check("max_pairs", question.count, self.limits.max_pairs)?;
+        self.answer_each(&Neighbours::new(&self.snapshot, question)?, &question.context)
+    }
+
+    fn answer_each<B: ItemBatch>(&self, batch: &B, context: &Context) -> Result<Answers<B::Item>, ServiceError> {
+        LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
+        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
+        let parts: Vec<(Vec<B::Item>, usize)> = split(batch.len()).into_par_iter().map(run).collect();
+        let answers = batch.join(parts);
+        if answers.out_of_time && answers.answered == 0 {
+            return Err(ServiceError::DeadlineExceeded);
+        }
+        Ok(answers)
     }
 
     fn answer(&self, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {

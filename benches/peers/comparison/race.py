@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from accuracy import brackets_that_miss, errors, no_worse, percentile99
 from contenders import OURS, PEERS
-from figures import grouped_median, ratio_of_rounds
+from measuring.figures import grouped_median, ratio_of_rounds
 
 #: Pairs of the first look, which spares us minutes where a contender takes a second a pair.
 FEW = 4

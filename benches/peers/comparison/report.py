@@ -2,11 +2,11 @@
 
 import csv
 import os
-import subprocess
 from datetime import datetime, timezone
 from importlib.metadata import version
 
 from contenders import OURS, PARRY_SINGLE
+from measuring.machine import commit, processor
 
 HEAD = (
     *("row", "best peer", "its µs", "ours at", "our µs", "ratio", "target", ""),
@@ -143,16 +143,6 @@ def csv_line(result, entry):
         f"{entry.error.max():.2e}" if known else "",
         entry.unanswered,
     ]
-
-
-def commit():
-    words = ["git", "describe", "--always", "--dirty"]
-    return subprocess.run(words, capture_output=True, text=True, check=False).stdout.strip()
-
-
-def processor():
-    with open("/proc/cpuinfo") as lines:
-        return next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
 
 
 def progress(result):

@@ -1,4 +1,6 @@
-//! What the Rust contenders share: the reader of the pairs, and the passes over them. `README.md` has the rules.
+//! What the Rust contenders share: the readers of their data, and the passes over it. `README.md` has the rules.
 
 pub mod contender;
 pub mod pairs;
+pub mod timer;
+pub mod trees;

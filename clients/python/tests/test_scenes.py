@@ -105,6 +105,8 @@ class Scenes(DaemonTest):
             "plane": clearance.plane([0, 0, 1], 0.0),
             "mesh": clearance.mesh(corners, faces, "solid"),
             "compound": clearance.compound([(clearance.sphere(0.1), clearance.pose([1, 0, 0]))]),
+            "height_field": clearance.height_field([[0, 1], [1, 2]], [0.5, 0.5], -1.0),
+            "point_cloud": clearance.point_cloud(corners, 0.1),
         }
         self.scene.apply(*(clearance.add_body(name, shape) for name, shape in shapes.items()))
         self.assertEqual([body.shape_kind for body in self.scene.contents().bodies], list(shapes))
@@ -120,6 +122,40 @@ class Scenes(DaemonTest):
         self.scene.apply(clearance.set_pair_margin(a, b, None), clearance.allow_collision(a, b))
         (answer,) = self.scene.distance()
         self.assertEqual((answer.verdict, answer.nearest), (Verdict.FREE, None))
+
+
+class Fields(DaemonTest):
+    def test_terrain_is_solid_below_its_surface(self) -> None:
+        x = np.linspace(0.0, 2.0, 21)
+        heights = np.add.outer(0.0 * x, x)  # Rising by 1 a metre along x.
+        for dtype in (np.float64, np.float32):
+            with self.subTest(dtype):
+                self.scene.apply(clearance.add_body("hill", clearance.height_field(heights.astype(dtype), [0.1, 0.1], -1.0)))
+                points = [(1.0, 2.0), (1.0, 0.5)]
+                subjects = [(clearance.point(), clearance.pose([px, 1.03, pz])) for px, pz in points]
+                over, under = self.scene.distance(*subjects)
+                self.assertAlmostEqual(over.nearest.signed_distance, np.sqrt(0.5), places=6)
+                self.assertEqual(under.verdict, Verdict.COLLISION)
+                self.scene.apply(clearance.remove_body("hill"))
+
+    def test_a_point_cloud_is_as_far_as_its_nearest_ball(self) -> None:
+        points = np.random.default_rng(5).uniform(-1.0, 1.0, (5000, 3))
+        self.scene.apply(clearance.add_body("cloud", clearance.point_cloud(points, 0.01)))
+        for place in np.random.default_rng(6).uniform(-2.0, 2.0, (20, 3)):
+            (answer,) = self.scene.distance((clearance.point(), clearance.pose(place)))
+            gaps = np.linalg.norm(points - place, axis=1) - 0.01
+            self.assertAlmostEqual(answer.nearest.signed_distance, gaps.min(), places=12)
+            self.assertEqual(answer.nearest.b.subshape, gaps.argmin())
+
+    def test_arrays_of_the_wrong_shape_are_refused_before_they_are_sent(self) -> None:
+        for make, field in [
+            (lambda: clearance.height_field([1.0, 2.0], [1, 1], 0.0), "heights"),
+            (lambda: clearance.height_field([[1.0, 2.0]] * 2, [1, 1, 1], 0.0), "spacing"),
+            (lambda: clearance.height_field([["a", "b"]] * 2, [1, 1], 0.0), "heights"),
+            (lambda: clearance.point_cloud([1.0, 2.0, 3.0]), "points"),
+        ]:
+            with self.subTest(field), self.assertRaisesRegex(ValueError, field):
+                make()
 
 
 class Refusals(DaemonTest):

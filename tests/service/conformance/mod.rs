@@ -3,6 +3,9 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod casts;
+mod contacts;
+mod fields;
 mod questions;
 mod revisions;
 mod robots;

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .answers import Applied, ItemAnswer, StatesAnswer
+from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
 from .edits import BodyName, body_ref
 from .errors import translated
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_mode
+from .v1 import cast_pb2 as cast
 from .v1 import geometry_pb2 as geometry
 from .v1 import health_pb2
 from .v1 import query_pb2 as query
@@ -270,6 +272,116 @@ class Scene:
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
         return [ItemAnswer.of(item) for item in answer.items]
+
+    def cast_rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        length: ArrayLike = 1e6,
+        mode: str = "first",
+        margin: float = 0.0,
+        ignore: Sequence[BodyName] = (),
+        max_hits: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> RaysAnswer:
+        """What does each ray meet?
+
+        `origins` and `directions` have shape (n, 3), or one origin for all; directions may have any length but zero. `length`, in metres, is one
+        number or one for each ray. `mode` is `first`, `all` (up to `max_hits` a ray) or `any` (only whether there is a hit, which is the
+        quickest). A `margin` makes rays thick.
+        """
+        context = self._cast_context("verdict", margin, None, ignore, max_hits, at_least)
+        request = rays_request(context, origins, directions, length, mode)
+        with translated():
+            return RaysAnswer.of(self._client._queries.CastRays(request, timeout=timeout or self._client._timeout))
+
+    def cast_shapes(
+        self,
+        *movers: cast.Mover,
+        mode: str = "first",
+        margin: float = 0.0,
+        resolution: Optional[float] = None,
+        ignore: Sequence[BodyName] = (),
+        max_hits: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[CastItem]:
+        """What does each moving shape or body (see :func:`moving`) meet, and when? All other bodies stay where they are."""
+        context = self._cast_context("verdict", margin, None, ignore, max_hits, at_least)
+        request = cast.CastShapesRequest(context=context, items=movers, mode=cast_mode(mode), resolution=resolution)
+        with translated():
+            answer = self._client._queries.CastShapes(request, timeout=timeout or self._client._timeout)
+        return [CastItem.of(item) for item in answer.items]
+
+    def check_moving_pairs(
+        self,
+        *pairs: tuple[cast.Mover, cast.Mover],
+        margin: float = 0.0,
+        resolution: Optional[float] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[CastItem]:
+        """When does each pair meet, of which both move?"""
+        context = self._cast_context("verdict", margin, None, (), None, at_least)
+        items = [cast.MovingPair(a=a, b=b) for a, b in pairs]
+        request = cast.CheckMovingPairsRequest(context=context, items=items, resolution=resolution)
+        with translated():
+            answer = self._client._queries.CheckMovingPairs(request, timeout=timeout or self._client._timeout)
+        return [CastItem.of(item) for item in answer.items]
+
+    def overlap(
+        self,
+        *regions: cast.Region,
+        bounds_only: bool = False,
+        margin: float = 0.0,
+        ignore: Sequence[BodyName] = (),
+        max_bodies: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[OverlapItem]:
+        """Which bodies have a point in each region? With `bounds_only` those whose bounding boxes meet the region's: more, for less."""
+        context = self._cast_context("verdict", margin, None, ignore, max_bodies, at_least)
+        request = cast.OverlapRequest(context=context, items=regions, bounds_only=bounds_only)
+        with translated():
+            answer = self._client._queries.Overlap(request, timeout=timeout or self._client._timeout)
+        return [OverlapItem.of(item) for item in answer.items]
+
+    def nearest_bodies(
+        self,
+        *subjects: Subject,
+        count: int = 1,
+        want: str = "witness",
+        margin: float = 0.0,
+        cut_off: Optional[float] = None,
+        ignore: Sequence[BodyName] = (),
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[NearestItem]:
+        """Which `count` bodies are nearest to each subject, and is that proved?"""
+        if not subjects:
+            raise ValueError("subjects: needs at least one body or shape")
+        context = self._cast_context(want, margin, cut_off, ignore, None, at_least)
+        request = cast.NearestBodiesRequest(context=context, items=_subjects(subjects), count=count)
+        with translated():
+            answer = self._client._queries.NearestBodies(request, timeout=timeout or self._client._timeout)
+        return [NearestItem.of(item) for item in answer.items]
+
+    def _cast_context(
+        self,
+        want: str,
+        margin: float,
+        cut_off: Optional[float],
+        ignore: Sequence[BodyName],
+        most: Optional[int],
+        at_least: Optional[int],
+    ) -> query.Context:
+        context = self._context(want, margin, cut_off, "default", at_least)
+        context.filter.ignore.extend(body_ref(body) for body in ignore)
+        if most is not None:
+            context.max_pairs = most
+        return context
 
     def _context(
         self, want: str, margin: float, cut_off: Optional[float], solver: str, at_least: Optional[int]

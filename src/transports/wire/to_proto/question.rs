@@ -94,6 +94,7 @@ fn filter(filter: &Filter) -> v1::Filter {
 fn subject(subject: &Subject) -> v1::Subject {
     let kind = match subject {
         Subject::All => v1::subject::Kind::AllPairs(v1::AllPairs {}),
+        Subject::ChangedSince(since) => v1::subject::Kind::ChangedSince(v1::ChangedSince { revision: since.0 }),
         Subject::Body(id) => v1::subject::Kind::Body(v1::BodyRef { by: Some(v1::body_ref::By::Id(id.0)) }),
         Subject::Shape { shape: placed, pose: at } => {
             v1::subject::Kind::Shape(v1::PlacedShape { shape: Some(shape(placed)), pose: Some(pose(at)) })
