@@ -11,8 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if env::var_os("CARGO_FEATURE_GRPC").is_none() {
         return Ok(());
     }
-    let files =
-        ["geometry", "scene", "robot", "query", "service"].map(|name| format!("proto/clearance/v1/{name}.proto"));
+    let files = ["geometry", "scene", "robot", "query", "motion", "service"]
+        .map(|name| format!("proto/clearance/v1/{name}.proto"));
     let descriptors = protox::compile(files, ["proto"])?;
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
     fs::write(out.join("clearance.descriptors"), prost::Message::encode_to_vec(&descriptors))?;

@@ -22,4 +22,6 @@ pub use contact_tracker::ContactTracker;
 pub use contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
 };
-pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};
+pub use request::{
+    CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Filter, Find, Mode, Motions, PairQuery, Subject, Wants,
+};

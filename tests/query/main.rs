@@ -2,7 +2,9 @@
 
 mod batches;
 mod bodies;
+mod clearance;
 mod edges;
 mod motions;
+mod random_motions;
 mod ur5;
 mod workload;

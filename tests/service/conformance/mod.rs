@@ -3,6 +3,7 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod motions;
 mod questions;
 mod revisions;
 mod robots;

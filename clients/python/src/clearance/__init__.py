@@ -34,6 +34,7 @@ from .errors import (
     RevisionGone,
     Unavailable,
 )
+from .motions import MotionsAnswer, along
 from .poses import pose, pose_from_matrix, random_pose
 from .robots import Joint, Robot
 from .shapes import (
@@ -67,6 +68,7 @@ __all__ = [
     "ItemAnswer",
     "Joint",
     "LimitExceeded",
+    "MotionsAnswer",
     "NotFound",
     "PairAnswer",
     "RevisionGone",
@@ -79,6 +81,7 @@ __all__ = [
     "add_body",
     "add_robot",
     "allow_collision",
+    "along",
     "ball_swept",
     "body",
     "box",

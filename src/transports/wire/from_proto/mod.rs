@@ -3,12 +3,14 @@
 
 mod answer;
 mod geometry;
+mod motion;
 mod path;
 mod query;
 mod robot;
 mod scene;
 
 pub use answer::{NotAnAnswer, answer};
+pub use motion::{check_motions, check_path, clearance, motions};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::{change, scene_options};

@@ -110,6 +110,19 @@ fn pair_query(
     snapshot: &Snapshot,
     library: &Library,
 ) -> Result<PairQuery, ServiceError> {
+    Ok(PairQuery {
+        items: subjects(items, snapshot, library)?,
+        mode: mode(mode_number)?,
+        context: context(context_message, snapshot)?,
+    })
+}
+
+/// What is held against the scene, item by item.
+pub(super) fn subjects(
+    items: &[v1::Subject],
+    snapshot: &Snapshot,
+    library: &Library,
+) -> Result<Vec<Subject>, ServiceError> {
     let subject = |(index, item): (usize, &v1::Subject)| {
         let path = Path::root_item("items", index);
         match path.required(item.kind.as_ref())? {
@@ -123,15 +136,11 @@ fn pair_query(
             }
         }
     };
-    Ok(PairQuery {
-        items: items.iter().enumerate().map(subject).collect::<Result<_, ServiceError>>()?,
-        mode: mode(mode_number)?,
-        context: context(context_message, snapshot)?,
-    })
+    items.iter().enumerate().map(subject).collect()
 }
 
 /// What every question carries; the numbers in it are checked by the query itself.
-fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
+pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
     let path = Path::root("context");
     let context = path.required(context)?;
     let wants = context.wants.unwrap_or_default();
@@ -190,7 +199,7 @@ fn body_id(path: &Path<'_>, body: Option<&v1::BodyRef>, snapshot: &Snapshot) -> 
     }
 }
 
-fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, ServiceError> {
+pub(super) fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, ServiceError> {
     match path.required(doubles.and_then(|doubles| doubles.form.as_ref()))? {
         v1::doubles::Form::Packed(packed) => Ok(packed.values.clone()),
         v1::doubles::Form::LittleEndian(bytes) => {
@@ -204,7 +213,7 @@ fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, S
     }
 }
 
-fn mode(number: i32) -> Result<Mode, ServiceError> {
+pub(super) fn mode(number: i32) -> Result<Mode, ServiceError> {
     match v1::Mode::try_from(number) {
         Ok(v1::Mode::Unspecified | v1::Mode::All) => Ok(Mode::All),
         Ok(v1::Mode::StopAtFirst) => Ok(Mode::StopAtFirst),
@@ -212,6 +221,6 @@ fn mode(number: i32) -> Result<Mode, ServiceError> {
     }
 }
 
-fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
+pub(super) fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
     path.invalid(format!("has the unknown value {number}"))
 }
