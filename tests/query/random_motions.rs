@@ -39,7 +39,7 @@ impl Random {
 
 fn collision(random: &mut Random) -> String {
     let at = random.vector(0.3);
-    let size = |random: &mut Random| random.between(0.03, 0.25);
+    let size = |random: &mut Random| random.between(0.02, 0.12);
     let geometry = match random.below(4) {
         0 => format!(r#"<box size="{} {} {}"/>"#, size(random), size(random), size(random) * 3.0),
         1 => format!(r#"<sphere radius="{}"/>"#, size(random)),
@@ -98,9 +98,9 @@ fn scene(random: &mut Random) -> (Arc<RobotModel>, Arc<Snapshot>) {
     let model = Arc::new(robot(random));
     let base = pose(random, 0.5);
     let mut edits = vec![Edit::AddRobot { name: "arm".to_owned(), model: Arc::clone(&model), base }];
-    for body in 0..random.below(7) {
+    for body in 0..random.below(16) {
         let shape = match random.below(5) {
-            0 => Shape::sphere(random.between(0.02, 0.3)),
+            0 => Shape::sphere(random.between(0.02, 0.2)),
             1 => {
                 Shape::cuboid(Vec3::new(random.between(0.0, 0.4), random.between(0.02, 0.4), random.between(0.02, 0.2)))
             }
@@ -115,8 +115,25 @@ fn scene(random: &mut Random) -> (Arc<RobotModel>, Arc<Snapshot>) {
     (model, scene.snapshot())
 }
 
+/// Start and goal, mostly from a start that is free, if one is met in a few throws.
+fn motion(random: &mut Random, model: &RobotModel, snapshot: &Snapshot) -> Vec<f64> {
+    let mut thrown = throw(random, model);
+    let throws = [1, 20][usize::from(random.below(6) > 0)];
+    for _ in 1..throws {
+        let positions = thrown[..model.degrees_of_freedom()].to_vec();
+        let context = Context { margin: 0.02, ..Context::default() };
+        let start = CheckStates { robot: "arm".to_owned(), positions, mode: Mode::All, context };
+        let start = Prepared::check_states(snapshot, &start).unwrap().answer(&|| false).items.remove(0);
+        if start.verdict == Verdict::Free {
+            break;
+        }
+        thrown = throw(random, model);
+    }
+    thrown
+}
+
 /// Start and goal; floating joints keep their orientation.
-fn motion(random: &mut Random, model: &RobotModel) -> Vec<f64> {
+fn throw(random: &mut Random, model: &RobotModel) -> Vec<f64> {
     let reach = [0.02, 0.3, 1.5, 4.0][random.below(4)];
     let mut start = Vec::new();
     let mut goal = Vec::new();
@@ -162,12 +179,12 @@ fn sweep(seed: u64, motions: usize, samples: usize) -> Reached {
             let context = Context { margin, ..Context::default() };
             let request = CheckMotions {
                 robot: "arm".to_owned(),
-                positions: motion(&mut random, &model),
+                positions: motion(&mut random, &model, &snapshot),
                 motions: Motions::Edges,
                 mode: Mode::All,
                 find: if random.below(4) == 0 { Find::AnyContact } else { Find::FirstContact },
                 resolution: [1e-4, 1e-3, 1e-2][random.below(3)],
-                max_states: [4096, 4096, 30][random.below(3)],
+                max_states: [4096, 4096, 4096, 12][random.below(4)],
                 context,
             };
             let item = Prepared::check_motions(&snapshot, &request).unwrap().answer(&|| false).items.remove(0);
@@ -247,12 +264,12 @@ fn assert_every_regime(reached: &Reached, motions: usize) {
     let Reached { free, at_start, midway, late, undecided, resolution, margin, own, turning, sliding } = *reached;
     for (count, least) in [
         (free, 10),
-        (at_start, 10),
-        (midway, 20),
-        (late, 50),
+        (at_start, 20),
+        (midway, 10),
+        (late, 20),
         (undecided, 100),
-        (resolution, 1000),
-        (margin, 100),
+        (resolution, 500),
+        (margin, 50),
         (own, 20),
         (turning, 2),
         (sliding, 2),
