@@ -270,7 +270,7 @@ fn assert_every_regime(reached: &Reached, motions: usize) {
         (undecided, 100),
         (resolution, 500),
         (margin, 50),
-        (own, 20),
+        (own, 50),
         (turning, 2),
         (sliding, 2),
     ] {
