@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
-use clearance::scene::{BodyId, Edit, Epoch, NewBody, Party, Scene};
+use clearance::scene::{BodyId, BroadPhaseKind, Edit, Epoch, NewBody, Party, Scene, SceneOptions};
 
 /// A place in a cube with about half a pair a body, and a little off it.
 fn place(i: usize, count: usize, off: f64) -> Pose {
@@ -23,9 +23,9 @@ fn nearby(i: usize, count: usize, round: usize) -> Pose {
     place(i, count, 0.05 * ((i * 31 + round * 17) % 97) as f64 / 97.0)
 }
 
-fn scene_of(count: usize) -> (Scene, f64) {
+fn scene_of(count: usize, broad_phase: BroadPhaseKind) -> (Scene, f64) {
     let limits = Limits { max_bodies: usize::MAX, max_edits: usize::MAX, ..Limits::default() };
-    let mut scene = Scene::with_limits(Epoch(1), limits);
+    let mut scene = Scene::with_options(Epoch(1), limits, &SceneOptions { broad_phase });
     let shape = Arc::new(Shape::cuboid(Vec3::repeat(0.5)).expect("positive"));
     let body = |i: usize| NewBody {
         groups: vec![format!("group {}", i % 16)],
@@ -58,29 +58,39 @@ fn measured(rounds: usize, scene: &mut Scene, mut edits: impl FnMut(usize) -> Ve
 fn main() {
     let largest = std::env::args().filter_map(|argument| argument.parse::<usize>().ok()).next().unwrap_or(1_000_000);
     println!("Microseconds an Apply, a revision published with each.\n");
-    println!("| N | built (ms) | nothing | move 1 | add and remove 1 | allow 1 pair | move 1 % | the same, each |");
-    println!("| --- | --- | --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| N | broad phase | built (ms) | nothing | move 1 | add and remove 1 | allow 1 pair | move 1 % | the same, each | bytes a body, written by 1 % |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for count in [1_000, 10_000, 100_000, 1_000_000].into_iter().filter(|count| *count <= largest) {
-        let (mut scene, built) = scene_of(count);
-        let some = |round: usize| (round * 7919) % count;
-        let nothing = measured(101, &mut scene, |_| Vec::new());
-        let one = measured(301, &mut scene, |round| vec![move_one(some(round), count, round)]);
-        let shape = Arc::new(Shape::sphere(0.3).expect("positive"));
-        let in_and_out = measured(101, &mut scene, |round| {
-            let new = NewBody::new("one more", Arc::clone(&shape), place(some(round), count, 0.0));
-            vec![Edit::AddBody(new), Edit::RemoveBody { body: "one more".into() }]
-        });
-        let allow = measured(101, &mut scene, |round| {
-            let party = |i: usize| Party::Body(BodyId(i as u64 + 1).into());
-            vec![Edit::SetAllowedCollision { a: party(some(round)), b: party(some(round + 1)), allowed: Some(true) }]
-        });
-        let hundredth = count / 100;
-        let percent = measured(41, &mut scene, |round| {
-            (0..hundredth).map(|i| move_one(some(round * hundredth + i), count, round)).collect()
-        });
-        let each = percent / hundredth as f64;
-        println!(
-            "| {count} | {built:.1} | {nothing:.2} | {one:.1} | {in_and_out:.1} | {allow:.1} | {percent:.0} | {each:.2} |"
-        );
+        for kind in [BroadPhaseKind::Tree, BroadPhaseKind::SweepAndPrune, BroadPhaseKind::Exhaustive] {
+            row(count, kind);
+        }
     }
+}
+
+fn row(count: usize, kind: BroadPhaseKind) {
+    let (mut scene, built) = scene_of(count, kind);
+    let some = |round: usize| (round * 7919) % count;
+    let nothing = measured(101, &mut scene, |_| Vec::new());
+    let one = measured(301, &mut scene, |round| vec![move_one(some(round), count, round)]);
+    let shape = Arc::new(Shape::sphere(0.3).expect("positive"));
+    let in_and_out = measured(101, &mut scene, |round| {
+        let new = NewBody::new("one more", Arc::clone(&shape), place(some(round), count, 0.0));
+        vec![Edit::AddBody(new), Edit::RemoveBody { body: "one more".into() }]
+    });
+    let allow = measured(101, &mut scene, |round| {
+        let party = |i: usize| Party::Body(BodyId(i as u64 + 1).into());
+        vec![Edit::SetAllowedCollision { a: party(some(round)), b: party(some(round + 1)), allowed: Some(true) }]
+    });
+    let hundredth = count / 100;
+    let percent = measured(41, &mut scene, |round| {
+        (0..hundredth).map(|i| move_one(some(round * hundredth + i), count, round)).collect()
+    });
+    let each = percent / hundredth as f64;
+    let snapshot = scene.snapshot();
+    let (bytes, written) = (snapshot.memory().total() / count, snapshot.written() / hundredth);
+    println!(
+        "| {count} | {kind:?} | {built:.1} | {nothing:.2} | {one:.1} | {in_and_out:.1} | {allow:.1} | {percent:.0} | {each:.2} | {bytes}, {written} each |"
+    );
 }

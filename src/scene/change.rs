@@ -47,8 +47,9 @@ impl Snapshot {
         if !self.allowed.is_as_in(&before.allowed) {
             self.settle_self_pairs();
         }
-        if !self.margins.is_as_in(&before.margins) {
+        if self.largest_margin_gone {
             self.largest_margin = self.margins.values().fold(0.0, f64::max);
+            self.largest_margin_gone = false;
         }
     }
 }

@@ -1,12 +1,14 @@
 //! How is the content of a scene kept in many versions? By a map from ids that clones share.
 //!
-//! A radix tree of 64-way nodes: a clone is one reference count, and a change copies the nodes on the way to one id,
-//! three for the first 262 144 ids. Nodes without entries are dropped: ids that are gone for good cost nothing.
+//! A radix tree of 16-way nodes: a clone is one reference count, and a change copies the nodes on the way to one id,
+//! five for the first million ids. Wider nodes would be fewer and found sooner, but a copy has to count a reference to
+//! everything the node points to, which is what an edit of a few scattered ids spends its time on. Nodes without entries
+//! are dropped: ids that are gone for good cost nothing.
 
 use std::array;
 use std::sync::Arc;
 
-const BITS: u32 = 6;
+const BITS: u32 = 4;
 const FANOUT: usize = 1 << BITS;
 
 /// A map from `u64` to `T`, in the order of the keys.

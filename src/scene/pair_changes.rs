@@ -41,13 +41,19 @@ impl Snapshot {
             self.changes.entry(a, b);
         }
         self.margins.set(a, b, margin);
+        // Only where the largest went are all entries looked at again.
+        self.largest_margin = self.largest_margin.max(margin.unwrap_or(0.0));
+        self.largest_margin_gone |=
+            before.is_some_and(|before| before >= self.largest_margin && margin != Some(before));
         Ok(())
     }
 
     /// Takes back all entries that name a party which leaves the scene.
     pub(super) fn forget_entries_of(&mut self, party: PartyKey) {
         let mut others = self.allowed.forget(party);
-        others.extend(self.margins.forget(party));
+        let with_margins = self.margins.forget(party);
+        self.largest_margin_gone |= !with_margins.is_empty();
+        others.extend(with_margins);
         others.into_iter().filter(|other| other.is_group()).for_each(|other| self.groups.drop_use(other));
     }
 

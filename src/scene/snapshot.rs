@@ -33,6 +33,8 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    /// An entry that may have had the largest margin was changed in this draft.
+    pub(super) largest_margin_gone: bool,
     pub(super) changes: ChangeLog,
     /// Bytes that the edits wrote which led here.
     pub(super) written: usize,
@@ -56,6 +58,7 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            largest_margin_gone: false,
             changes: ChangeLog::new(Revision(0)),
             written: 0,
         }

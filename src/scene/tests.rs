@@ -4,6 +4,7 @@
 mod changes;
 mod entries;
 mod history;
+mod memory;
 mod model;
 mod random_edits;
 mod refusals;
