@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if env::var_os("CARGO_FEATURE_GRPC").is_none() {
         return Ok(());
     }
-    let files = ["geometry", "scene", "robot", "query", "cast", "service"]
+    let files = ["geometry", "health", "scene", "robot", "query", "cast", "service"]
         .map(|name| format!("proto/clearance/v1/{name}.proto"));
     let descriptors = protox::compile(files, ["proto"])?;
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);

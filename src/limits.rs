@@ -31,6 +31,10 @@ pub struct Limits {
     pub max_edits: usize,
     /// Revisions of a scene that can still be asked.
     pub snapshots_kept: usize,
+    /// What the kept revisions of a scene may hold beside the oldest of them, bytes.
+    pub max_kept_bytes: usize,
+    /// Bodies listed by one `GetScene`.
+    pub max_bodies_listed: usize,
     /// Idempotency keys remembered for one scene.
     pub idempotency_keys_kept: usize,
     /// Points of one convex hull before inner ones are left out.
@@ -71,12 +75,14 @@ impl Default for Limits {
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
             max_scenes: 1_000,
-            max_bodies: 100_000,
+            max_bodies: 2_000_000,
             max_robots_in_scene: 64,
             max_pair_entries: 100_000,
             max_robot_models: 256,
-            max_edits: 10_000,
+            max_edits: 100_000,
             snapshots_kept: 64,
+            max_kept_bytes: 2 << 30,
+            max_bodies_listed: 100_000,
             idempotency_keys_kept: 1_024,
             max_hull_points: 100_000,
             max_mesh_triangles: 2_000_000,
@@ -128,6 +134,8 @@ impl Limits {
             max_robot_models,
             max_edits,
             snapshots_kept,
+            max_kept_bytes,
+            max_bodies_listed,
             idempotency_keys_kept,
             max_hull_points,
             max_mesh_triangles,
@@ -157,6 +165,13 @@ impl Limits {
             row("max_robot_models", max_robot_models, "robot models", EXHAUSTED),
             row("max_edits", max_edits, "edits per Apply", EXHAUSTED),
             row("snapshots_kept", snapshots_kept, "revisions per scene", "OUT_OF_RANGE naming the oldest kept"),
+            row(
+                "max_kept_bytes",
+                max_kept_bytes,
+                "bytes per scene, beside its oldest kept revision",
+                "the oldest revisions are let go early: OUT_OF_RANGE naming the oldest kept",
+            ),
+            row("max_bodies_listed", max_bodies_listed, "bodies per GetScene", EXHAUSTED),
             row(
                 "idempotency_keys_kept",
                 idempotency_keys_kept,

@@ -180,6 +180,13 @@ impl BroadPhase {
         whichever!(self, it => it.memory())
     }
 
+    /// Bytes that no other version holds: after a list of changes to a clone, what they cost. It looks only at what is
+    /// not shared.
+    #[must_use]
+    pub fn own_memory(&self) -> usize {
+        whichever!(self, it => it.own_memory())
+    }
+
     /// Looks at everything the operations rely on.
     ///
     /// # Errors

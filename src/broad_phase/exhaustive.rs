@@ -4,7 +4,7 @@
 
 use std::ops::ControlFlow;
 
-use super::pages::Pages;
+use super::shared_array::SharedArray;
 use super::walk_by_distance::{Next, Waiting, lower_distance};
 use super::{ProxyId, TraversalStats};
 use crate::geometry::{Aabb, BoxCast};
@@ -16,7 +16,7 @@ const NONE: u32 = u32::MAX;
 /// pairs. A clone shares what neither side changed. Boxes must be finite and not empty.
 #[derive(Clone, Debug)]
 pub struct Exhaustive {
-    places: Pages<Place>,
+    places: SharedArray<Place>,
     first_free: u32,
     count: usize,
 }
@@ -50,7 +50,7 @@ impl Exhaustive {
     /// Without entries.
     #[must_use]
     pub fn new() -> Self {
-        Self { places: Pages::new(), first_free: NONE, count: 0 }
+        Self { places: SharedArray::new(), first_free: NONE, count: 0 }
     }
 
     /// Adds an entry: a box, metres, and the caller's number for it.
@@ -66,13 +66,13 @@ impl Exhaustive {
         if let Place::Free { next } = self.places[place] {
             self.first_free = next;
         }
-        self.places[place] = taken;
+        self.places.set(place, taken);
         ProxyId(place)
     }
 
     /// Removes an entry. Its name may be given to another one afterwards.
     pub fn remove(&mut self, proxy: ProxyId) {
-        self.places[proxy.0] = Place::Free { next: self.first_free };
+        self.places.set(proxy.0, Place::Free { next: self.first_free });
         self.first_free = proxy.0;
         self.count -= 1;
     }
@@ -83,7 +83,7 @@ impl Exhaustive {
         if before == tight {
             return false;
         }
-        self.places[proxy.0] = Place::Taken { tight, payload };
+        self.places.set(proxy.0, Place::Taken { tight, payload });
         true
     }
 
@@ -199,7 +199,13 @@ impl Exhaustive {
     /// Bytes of this version, those it shares with others included.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.places.len() * size_of::<Place>()
+        self.places.memory()
+    }
+
+    /// Bytes that no other version holds.
+    #[must_use]
+    pub fn own_memory(&self) -> usize {
+        self.places.own_memory()
     }
 
     /// Looks at everything the operations rely on.

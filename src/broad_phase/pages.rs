@@ -40,6 +40,13 @@ impl<T: Clone> Pages<T> {
     }
 }
 
+impl<T> Pages<T> {
+    /// Bytes of the pages that no other version holds.
+    pub(super) fn own_memory(&self) -> usize {
+        self.pages.iter().filter(|page| Arc::strong_count(page) == 1).count() * size_of::<[T; PAGE]>()
+    }
+}
+
 impl<T> Index<u32> for Pages<T> {
     type Output = T;
 

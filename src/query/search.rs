@@ -123,8 +123,13 @@ impl<'a> Search<'a> {
             accuracy: self.plan.context.accuracy,
             solver: self.plan.context.solver,
             margin,
-            // Beyond its own margin a pair needs no more than the proof that it is beyond.
-            cut_off: if self.margins_matter() { matters_up_to.max(margin) } else { matters_up_to },
+            // Beyond its own margin a pair needs no more than the proof that it is beyond. A cut-off that is not positive
+            // would say that the pair's own contact is of no interest.
+            cut_off: if self.margins_matter() {
+                matters_up_to.max(margin).max(f64::MIN_POSITIVE)
+            } else {
+                matters_up_to
+            },
             stop: self.plan.stop,
         };
         match separation(a.shape, b.shape, a.at, b.at, &goal) {

@@ -157,7 +157,7 @@ impl Snapshot {
                 unbounded.insert(place, body.id);
             }
         }
-        self.bodies.insert(body.id.0, Arc::new(body));
+        self.store(body);
     }
 
     /// Takes a body out of the broad phase and the list of those without bounds.

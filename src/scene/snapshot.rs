@@ -34,6 +34,8 @@ pub struct Snapshot {
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
     pub(super) changes: ChangeLog,
+    /// Bytes that the edits wrote which led here.
+    pub(super) written: usize,
 }
 
 impl Snapshot {
@@ -55,6 +57,7 @@ impl Snapshot {
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
             changes: ChangeLog::new(Revision(0)),
+            written: 0,
         }
     }
 
@@ -73,6 +76,12 @@ impl Snapshot {
     /// All bodies in the order of their ids.
     pub fn bodies(&self) -> impl Iterator<Item = &Arc<Body>> {
         self.bodies.values()
+    }
+
+    /// Bodies with ids above `id`, in the order of their ids.
+    pub fn bodies_after(&self, id: BodyId) -> impl Iterator<Item = &Arc<Body>> {
+        let first = id.0.checked_add(1);
+        first.into_iter().flat_map(|first| self.bodies.values_from(first))
     }
 
     /// Number of bodies.

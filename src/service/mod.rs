@@ -12,6 +12,7 @@ mod remembered_keys;
 mod revision_rule;
 mod robots;
 mod scene_cell;
+mod scene_health;
 mod scenes;
 #[expect(clippy::module_inception, reason = "the service of the floor `service`")]
 mod service;
@@ -26,6 +27,7 @@ pub use remembered_keys::IdempotencyKey;
 pub use revision_rule::{RevisionRule, Rule};
 pub use robots::{LoadedRobot, RobotDescription, Robots};
 pub use scene_cell::Change;
+pub use scene_health::{KeptRevision, SceneHealth};
 pub use scenes::SceneSummary;
 pub use service::{Changed, Config, Door, Service, Target};
 pub use view::View;

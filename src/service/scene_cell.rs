@@ -13,6 +13,7 @@ use super::admission::{Admission, Permit};
 use super::deadline::{Deadline, Stop};
 use super::remembered_keys::{IdempotencyKey, RememberedKeys};
 use super::revision_rule::{Kept, RevisionRule, Rule};
+use super::scene_health::SceneHealth;
 use super::scenes::SceneSummary;
 use super::{ServiceError, workers};
 use crate::limits::Limits;
@@ -36,7 +37,6 @@ pub struct Change {
 pub(super) struct SceneCell {
     name: String,
     epoch: Epoch,
-    kept: usize,
     queue: Admission,
     writer: Arc<Mutex<Writer>>,
     published: ArcSwap<Kept>,
@@ -67,7 +67,6 @@ impl SceneCell {
         Self {
             name,
             epoch,
-            kept: limits.snapshots_kept,
             queue: Admission::new("max_queued_writes", limits.max_queued_writes),
             writer: Arc::new(Mutex::new(Writer { scene, keys, broken: false })),
             published: ArcSwap::from_pointee(Kept::new(snapshot)),
@@ -85,6 +84,11 @@ impl SceneCell {
             robots: latest.robots().count(),
             broad_phase: latest.broad_phase().kind(),
         }
+    }
+
+    pub fn health(&self) -> SceneHealth {
+        let kept = self.published.load_full();
+        SceneHealth::of(self.name.clone(), &kept)
     }
 
     pub fn epoch(&self) -> Epoch {
@@ -133,7 +137,7 @@ impl SceneCell {
                 return Err(if stop.now() { ServiceError::DeadlineExceeded } else { cell.not_found() });
             }
             let applied = writer.apply(change)?;
-            cell.publish(writer.scene.snapshot());
+            cell.publish(writer.scene.snapshot(), writer.scene.oldest_revision());
             Ok(applied)
         })
         .await
@@ -145,13 +149,13 @@ impl SceneCell {
     }
 
     /// Only the one who holds the lock on the writer calls this.
-    fn publish(&self, snapshot: Arc<Snapshot>) {
+    fn publish(&self, snapshot: Arc<Snapshot>, oldest: Revision) {
         let before = self.published.load_full();
         if snapshot.revision() == before.latest().revision() {
             return; // A repeated request: nothing new.
         }
         let revision = snapshot.revision();
-        self.published.store(Arc::new(before.with(snapshot, self.kept)));
+        self.published.store(Arc::new(before.with(snapshot, oldest)));
         self.head.send_if_modified(|head| {
             let alive = *head != Head::Deleted;
             if alive {

@@ -13,6 +13,7 @@ use super::library::Library;
 use super::revision_rule::RevisionRule;
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
+use super::scene_health::SceneHealth;
 use super::scenes::{SceneSummary, Scenes};
 use super::view::View;
 use super::workers::{Workers, prepare};
@@ -166,6 +167,22 @@ impl Service {
     /// The scene is not there.
     pub fn oldest_revision(&self, scene: &str) -> Result<Revision, ServiceError> {
         Ok(self.scenes.get(scene)?.oldest_revision())
+    }
+
+    /// How a scene is. Worked out on the threads that answer questions: it looks at all of the scene.
+    ///
+    /// # Errors
+    /// The scene is not there, or too many questions are being answered.
+    pub async fn scene_health(&self, scene: &str) -> Result<SceneHealth, ServiceError> {
+        self.check_open()?;
+        let permit = self.queries.enter()?;
+        let cell = self.scenes.get(scene)?;
+        self.workers
+            .answer(move || {
+                let _permit = permit;
+                Ok(cell.health())
+            })
+            .await
     }
 
     /// Changes a scene, after the changes that came before. `change` is worked out on a thread of its own first; it may

@@ -3,7 +3,10 @@
 mod batches;
 mod bodies;
 mod casts;
+mod changed_since;
+mod contacts;
 mod edges;
 mod motions;
+mod moving_scene;
 mod ur5;
 mod workload;

@@ -34,6 +34,16 @@ class Scenes(DaemonTest):
         with self.assertRaisesRegex(ValueError, "broad_phase: is 'octree'"):
             self.client.create_scene("never made", broad_phase="octree")
 
+    def test_health_tells_what_a_scene_holds(self) -> None:
+        self.scene.apply(*(clearance.add_body(f"ball {x}", clearance.sphere(0.1), clearance.pose([x, 0, 0])) for x in range(300)))
+        self.scene.apply(clearance.move_body("ball 0", clearance.pose([0, 0, 1])))
+        health = self.scene.health()
+        self.assertEqual((health.bodies, health.tree.entries, [kept.revision for kept in health.kept]), (300, 300, [0, 1, 2]))
+        self.assertGreater(health.kept[1].written_bytes, 5 * health.kept[2].written_bytes)
+        self.assertGreaterEqual(health.kept_bytes, health.memory.bodies + health.memory.broad_phase)
+        contents = self.scene.contents()
+        self.assertEqual((len(contents.bodies), contents.body_count, contents.bodies_left), (300, 300, False))
+
     def test_distance_gives_bracket_points_and_normal(self) -> None:
         self.scene.apply(
             clearance.add_body("a", clearance.sphere(1.0)),

@@ -1,9 +1,11 @@
 //! The broad phase that sorts: what it keeps, and how boxes come, go and move.
 
+use std::sync::Arc;
+
 use super::segment::{Entry, Key, Segment};
 use super::sorted_list::{Part, Shelf, SortedList};
 use crate::broad_phase::ProxyId;
-use crate::broad_phase::pages::Pages;
+use crate::broad_phase::shared_array::{COUNTS, SharedArray};
 use crate::geometry::Aabb;
 
 /// Stands for no entry.
@@ -18,7 +20,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub struct SweepAndPrune {
     pub(super) list: SortedList,
-    pub(super) slots: Pages<Slot>,
+    pub(super) slots: SharedArray<Slot>,
     pub(super) first_free: u32,
     pub(super) count: usize,
     /// Since the axis was looked at.
@@ -62,7 +64,7 @@ impl SweepAndPrune {
     /// Without entries, to be sorted along x until there are enough to choose by.
     #[must_use]
     pub fn new() -> Self {
-        Self { list: SortedList::new(0), slots: Pages::new(), first_free: NONE, count: 0, changes: 0 }
+        Self { list: SortedList::new(0), slots: SharedArray::new(), first_free: NONE, count: 0, changes: 0 }
     }
 
     /// Adds an entry: a box, metres, and the caller's number for it.
@@ -78,7 +80,7 @@ impl SweepAndPrune {
                 if let SlotState::Free { next } = self.slots[slot].state {
                     self.first_free = next;
                 }
-                self.slots[slot] = taken;
+                self.slots.set(slot, taken);
                 slot
             }
         };
@@ -91,7 +93,7 @@ impl SweepAndPrune {
     /// Removes an entry. Its name may be given to another one afterwards.
     pub fn remove(&mut self, proxy: ProxyId) {
         self.list.remove(&self.key(proxy));
-        self.slots[proxy.0].state = SlotState::Free { next: self.first_free };
+        self.slots.set(proxy.0, Slot { at: 0.0, state: SlotState::Free { next: self.first_free } });
         self.first_free = proxy.0;
         self.count -= 1;
         self.changes += 1;
@@ -109,7 +111,7 @@ impl SweepAndPrune {
         self.list.change(&before, &entry);
         let at = tight.min[self.list.axis];
         if at != before.at {
-            self.slots[proxy.0].at = at;
+            self.slots.set(proxy.0, Slot { at, state: SlotState::Taken });
         }
         self.changes += 1;
         true
@@ -163,9 +165,22 @@ impl SweepAndPrune {
     /// Bytes of this version, those it shares with others included.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let shelf = |part: &Part<Shelf>| part.content.len() * (size_of::<Part<Segment>>() + size_of::<Segment>());
+        let shelf =
+            |part: &Part<Shelf>| part.content.len() * (size_of::<Part<Segment>>() + size_of::<Segment>() + COUNTS);
         let shelves: usize = self.list.shelves.iter().map(shelf).sum();
-        shelves + self.list.shelves.len() * size_of::<Part<Shelf>>() + self.slots.len() * size_of::<Slot>()
+        shelves + self.list.shelves.len() * (size_of::<Part<Shelf>>() + COUNTS) + self.slots.memory()
+    }
+
+    /// Bytes that no other version holds.
+    #[must_use]
+    pub fn own_memory(&self) -> usize {
+        let own_shelves = self.list.shelves.iter().filter(|part| Arc::strong_count(&part.content) == 1);
+        let shelf = |part: &Part<Shelf>| {
+            let own = part.content.iter().filter(|part| Arc::strong_count(&part.content) == 1).count();
+            own * (size_of::<Segment>() + COUNTS) + part.content.len() * size_of::<Part<Segment>>()
+        };
+        let shelves: usize = own_shelves.map(shelf).sum();
+        shelves + self.list.shelves.len() * size_of::<Part<Shelf>>() + self.slots.own_memory()
     }
 
     /// Entries by their slots: an order that does not depend on where the boxes are.
@@ -182,7 +197,7 @@ impl SweepAndPrune {
     pub(super) fn sort_along(&mut self, axis: usize) {
         let entries: Vec<Entry> = self.list.segments().flat_map(|part| part.content.entries()).collect();
         for entry in &entries {
-            self.slots[entry.slot].at = entry.tight.min[axis];
+            self.slots.set(entry.slot, Slot { at: entry.tight.min[axis], state: SlotState::Taken });
         }
         self.list = SortedList::of(axis, entries);
     }

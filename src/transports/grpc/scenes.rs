@@ -34,6 +34,14 @@ impl Scenes for Handlers {
         respond(self.contents(request).await)
     }
 
+    async fn get_scene_health(
+        &self,
+        request: Request<v1::GetSceneHealthRequest>,
+    ) -> Result<Response<v1::GetSceneHealthResponse>, Status> {
+        let health = self.service.scene_health(&request.into_inner().scene).await;
+        respond(health.map(|health| v1::GetSceneHealthResponse { health: Some(to_proto::scene_health(&health)) }))
+    }
+
     async fn delete_scene(
         &self,
         request: Request<v1::DeleteSceneRequest>,
@@ -52,12 +60,13 @@ impl Handlers {
         let timeout = grpc_timeout(request.metadata())?;
         let message = request.into_inner();
         let revision = from_proto::revision_rule(message.revision.as_ref());
+        let page = from_proto::body_page(&message, self.service.limits())?;
         let target = Target { scene: message.scene, revision };
         let oldest = self.service.oldest_revision(&target.scene)?;
         let (name, robots) = (target.scene.clone(), Arc::clone(self.service.robots()));
         let patience = Patience { timeout, time_budget: None };
         let question = self.service.ask(&target, patience, move |view| {
-            let contents = to_proto::scene_contents(&name, view.snapshot(), oldest, &robots);
+            let contents = to_proto::scene_contents(&name, view.snapshot(), oldest, &robots, page);
             Ok(v1::GetSceneResponse { scene: Some(contents) })
         });
         question.await

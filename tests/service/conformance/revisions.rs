@@ -46,6 +46,7 @@ async fn an_earlier_revision_answers_as_it_was(door: &impl Door) {
     let contents = v1::GetSceneRequest {
         scene: SCENE.to_owned(),
         revision: Some(v1::RevisionRule { epoch: None, rule: Some(Rule::Exactly(0)) }),
+        ..v1::GetSceneRequest::default()
     };
     let contents = door.get_scene(contents).await.unwrap();
     assert_eq!((contents.revision, contents.oldest_revision, contents.bodies.len()), (0, 0, 0));

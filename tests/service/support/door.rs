@@ -53,6 +53,7 @@ pub trait Door {
     async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary>;
     async fn delete_scene(&self, name: &str) -> Told<v1::SceneSummary>;
     async fn get_scene(&self, request: v1::GetSceneRequest) -> Told<v1::SceneContents>;
+    async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth>;
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse>;
     async fn put_asset(&self, announced: v1::AssetHeader, bytes: &[u8]) -> Told<v1::PutAssetResponse>;
     async fn load_robot(&self, request: v1::LoadRobotRequest) -> Told<v1::RobotModel>;
@@ -119,11 +120,16 @@ impl Door for InProcess {
     async fn get_scene(&self, request: v1::GetSceneRequest) -> Told<v1::SceneContents> {
         let revision = from_proto::revision_rule(request.revision.as_ref());
         let target = Target { scene: request.scene.clone(), revision };
+        let page = from_proto::body_page(&request, self.service.limits())?;
         let oldest = self.service.oldest_revision(&request.scene)?;
         let robots = Arc::clone(self.service.robots());
         let contents =
-            move |view: &View| Ok(to_proto::scene_contents(&request.scene, view.snapshot(), oldest, &robots));
+            move |view: &View| Ok(to_proto::scene_contents(&request.scene, view.snapshot(), oldest, &robots, page));
         Ok(self.service.ask(&target, Patience::default(), contents).await?)
+    }
+
+    async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
+        Ok(to_proto::scene_health(&self.service.scene_health(scene).await?))
     }
 
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse> {
@@ -245,6 +251,11 @@ impl Door for Grpc {
 
     async fn get_scene(&self, request: v1::GetSceneRequest) -> Told<v1::SceneContents> {
         Ok(ScenesClient::new(self.channel.clone()).get_scene(request).await?.into_inner().scene.unwrap())
+    }
+
+    async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
+        let request = v1::GetSceneHealthRequest { scene: scene.to_owned() };
+        Ok(ScenesClient::new(self.channel.clone()).get_scene_health(request).await?.into_inner().health.unwrap())
     }
 
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse> {

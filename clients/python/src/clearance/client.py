@@ -19,6 +19,7 @@ from .robots import Description, PathLike, Robot
 from .shapes import mesh_mode
 from .v1 import cast_pb2 as cast
 from .v1 import geometry_pb2 as geometry
+from .v1 import health_pb2
 from .v1 import query_pb2 as query
 from .v1 import robot_pb2, scene_pb2
 from .v1 import service_pb2 as service
@@ -161,11 +162,25 @@ class Scene:
         return Applied(answer.epoch, answer.revision, tuple(answer.added))
 
     def contents(self, *, revision: Optional[int] = None) -> scene_pb2.SceneContents:
-        """Bodies and robots of the newest revision, or of a given one."""
+        """Bodies and robots of the newest revision, or of a given one; of a large scene page by page, as one."""
         rule = query.RevisionRule(exactly=revision) if revision is not None else None
         request = service.GetSceneRequest(scene=self.name, revision=rule)
         with translated():
-            return self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+            contents = self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+            # The other pages are of the first one's state.
+            request.revision.CopyFrom(query.RevisionRule(exactly=contents.revision, epoch=contents.epoch))
+            while contents.bodies_left:
+                request.after_body = contents.bodies[-1].id
+                page = self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+                contents.bodies.extend(page.bodies)
+                contents.bodies_left = page.bodies_left
+        return contents
+
+    def health(self) -> health_pb2.SceneHealth:
+        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now."""
+        request = health_pb2.GetSceneHealthRequest(scene=self.name)
+        with translated():
+            return self._client._scenes.GetSceneHealth(request, timeout=self._client._timeout).health
 
     def delete(self) -> None:
         """The scene is gone."""

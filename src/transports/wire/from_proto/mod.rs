@@ -14,6 +14,6 @@ pub use answer::{NotAnAnswer, answer};
 pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
-pub use scene::{change, scene_options};
+pub use scene::{BodyPage, body_page, change, scene_options};
 
 use path::Path;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use prost::Message;
 
 use super::{Path, geometry};
-use crate::limits::LimitExceeded;
+use crate::limits::{LimitExceeded, Limits};
 use crate::scene::{BodyId, BodyRef, BroadPhaseKind, Edit, Epoch, NewBody, Party, Revision, SceneOptions};
 use crate::service::{Change, ContentHash, IdempotencyKey, Library, Robots, ServiceError};
 use crate::transports::wire::v1;
@@ -40,6 +40,25 @@ pub fn scene_options(request: &v1::CreateSceneRequest) -> Result<SceneOptions, S
         Err(_) => return Err(Path::root("broad_phase").invalid(format!("has the unknown value {number}"))),
     };
     Ok(SceneOptions { broad_phase })
+}
+
+/// Which bodies of a scene are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyPage {
+    /// Those with ids above this.
+    pub after: BodyId,
+    /// At most so many.
+    pub most: usize,
+}
+
+/// Which bodies of a scene are asked for.
+///
+/// # Errors
+/// More than the cap allows.
+pub fn body_page(request: &v1::GetSceneRequest, limits: &Limits) -> Result<BodyPage, ServiceError> {
+    let most = request.max_bodies.map_or(limits.max_bodies_listed, |most| most as usize);
+    LimitExceeded::check("max_bodies_listed", most, limits.max_bodies_listed)?;
+    Ok(BodyPage { after: BodyId(request.after_body), most })
 }
 
 /// The same edits have the same bytes: protobuf's encoder writes fields in order.

@@ -4,6 +4,7 @@ mod answer;
 mod cast;
 mod count;
 mod geometry;
+mod health;
 mod question;
 mod robot;
 mod scene;
@@ -13,6 +14,7 @@ pub use cast::{
     cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
 };
 pub use geometry::{pose, shape};
+pub use health::scene_health;
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};
 pub use scene::{add_body, apply_response, body_ref, door, limit, scene_contents, scene_summary};

@@ -250,7 +250,7 @@ class RobotInScene(_message.Message):
     def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., base: _Optional[_Union[_geometry_pb2.Pose, _Mapping]] = ...) -> None: ...
 
 class SceneContents(_message.Message):
-    __slots__ = ("name", "epoch", "revision", "oldest_revision", "bodies", "robots", "broad_phase")
+    __slots__ = ("name", "epoch", "revision", "oldest_revision", "bodies", "robots", "broad_phase", "body_count", "bodies_left")
     NAME_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
@@ -258,6 +258,8 @@ class SceneContents(_message.Message):
     BODIES_FIELD_NUMBER: _ClassVar[int]
     ROBOTS_FIELD_NUMBER: _ClassVar[int]
     BROAD_PHASE_FIELD_NUMBER: _ClassVar[int]
+    BODY_COUNT_FIELD_NUMBER: _ClassVar[int]
+    BODIES_LEFT_FIELD_NUMBER: _ClassVar[int]
     name: str
     epoch: int
     revision: int
@@ -265,4 +267,6 @@ class SceneContents(_message.Message):
     bodies: _containers.RepeatedCompositeFieldContainer[Body]
     robots: _containers.RepeatedCompositeFieldContainer[RobotInScene]
     broad_phase: BroadPhase
-    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., oldest_revision: _Optional[int] = ..., bodies: _Optional[_Iterable[_Union[Body, _Mapping]]] = ..., robots: _Optional[_Iterable[_Union[RobotInScene, _Mapping]]] = ..., broad_phase: _Optional[_Union[BroadPhase, str]] = ...) -> None: ...
+    body_count: int
+    bodies_left: bool
+    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., oldest_revision: _Optional[int] = ..., bodies: _Optional[_Iterable[_Union[Body, _Mapping]]] = ..., robots: _Optional[_Iterable[_Union[RobotInScene, _Mapping]]] = ..., broad_phase: _Optional[_Union[BroadPhase, str]] = ..., body_count: _Optional[int] = ..., bodies_left: bool = ...) -> None: ...

@@ -1,4 +1,5 @@
 from clearance.v1 import cast_pb2 as _cast_pb2
+from clearance.v1 import health_pb2 as _health_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
@@ -69,12 +70,16 @@ class ListScenesResponse(_message.Message):
     def __init__(self, scenes: _Optional[_Iterable[_Union[_scene_pb2.SceneSummary, _Mapping]]] = ...) -> None: ...
 
 class GetSceneRequest(_message.Message):
-    __slots__ = ("scene", "revision")
+    __slots__ = ("scene", "revision", "max_bodies", "after_body")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
+    MAX_BODIES_FIELD_NUMBER: _ClassVar[int]
+    AFTER_BODY_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: _query_pb2.RevisionRule
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[_query_pb2.RevisionRule, _Mapping]] = ...) -> None: ...
+    max_bodies: int
+    after_body: int
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[_query_pb2.RevisionRule, _Mapping]] = ..., max_bodies: _Optional[int] = ..., after_body: _Optional[int] = ...) -> None: ...
 
 class GetSceneResponse(_message.Message):
     __slots__ = ("scene",)

@@ -4,6 +4,7 @@ import grpc
 import warnings
 
 from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
+from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import service_pb2 as clearance_dot_v1_dot_service__pb2
@@ -53,6 +54,11 @@ class ScenesStub(object):
                 request_serializer=clearance_dot_v1_dot_service__pb2.GetSceneRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.GetSceneResponse.FromString,
                 _registered_method=True)
+        self.GetSceneHealth = channel.unary_unary(
+                '/clearance.v1.Scenes/GetSceneHealth',
+                request_serializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.FromString,
+                _registered_method=True)
         self.DeleteScene = channel.unary_unary(
                 '/clearance.v1.Scenes/DeleteScene',
                 request_serializer=clearance_dot_v1_dot_service__pb2.DeleteSceneRequest.SerializeToString,
@@ -90,6 +96,13 @@ class ScenesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def GetSceneHealth(self, request, context):
+        """What a scene holds in memory, and how good its broad phase is.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
     def DeleteScene(self, request, context):
         """The scene and its revisions are gone; questions being answered are still answered.
         """
@@ -121,6 +134,11 @@ def add_ScenesServicer_to_server(servicer, server):
                     servicer.GetScene,
                     request_deserializer=clearance_dot_v1_dot_service__pb2.GetSceneRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.GetSceneResponse.SerializeToString,
+            ),
+            'GetSceneHealth': grpc.unary_unary_rpc_method_handler(
+                    servicer.GetSceneHealth,
+                    request_deserializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.SerializeToString,
             ),
             'DeleteScene': grpc.unary_unary_rpc_method_handler(
                     servicer.DeleteScene,
@@ -215,6 +233,33 @@ class Scenes(object):
             '/clearance.v1.Scenes/GetScene',
             clearance_dot_v1_dot_service__pb2.GetSceneRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.GetSceneResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def GetSceneHealth(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Scenes/GetSceneHealth',
+            clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.SerializeToString,
+            clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.FromString,
             options,
             channel_credentials,
             insecure,
