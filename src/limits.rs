@@ -61,6 +61,10 @@ pub struct Limits {
     pub max_queries_in_flight: usize,
     /// Changes of one scene waiting for their turn.
     pub max_queued_writes: usize,
+    /// Callers that watch contacts, over all scenes.
+    pub max_watchers: usize,
+    /// Pairs in contact or undecided that one watcher may have.
+    pub max_contacts: usize,
     /// Uploads and robot loadings under way.
     pub max_uploads_in_flight: usize,
     /// Longest time a question may take, seconds.
@@ -96,6 +100,8 @@ impl Default for Limits {
             max_name_bytes: 256,
             max_queries_in_flight: 64,
             max_queued_writes: 64,
+            max_watchers: 32,
+            max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
         }
@@ -116,6 +122,7 @@ pub struct Limit {
 }
 
 const EXHAUSTED: &str = "RESOURCE_EXHAUSTED naming limit, asked and allowed";
+const EXHAUSTED_AT_THE_END: &str = "the stream ends with RESOURCE_EXHAUSTED naming limit, asked and allowed";
 
 impl Limits {
     /// Every cap, in the order of the fields.
@@ -149,6 +156,8 @@ impl Limits {
             max_name_bytes,
             max_queries_in_flight,
             max_queued_writes,
+            max_watchers,
+            max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
         } = *self;
@@ -190,6 +199,8 @@ impl Limits {
             row("max_name_bytes", max_name_bytes, "bytes per name", EXHAUSTED),
             row("max_queries_in_flight", max_queries_in_flight, "questions at a time", EXHAUSTED),
             row("max_queued_writes", max_queued_writes, "waiting changes per scene", EXHAUSTED),
+            row("max_watchers", max_watchers, "watchers at a time", EXHAUSTED),
+            row("max_contacts", max_contacts, "contacts per watcher", EXHAUSTED_AT_THE_END),
             row("max_uploads_in_flight", max_uploads_in_flight, "uploads at a time", EXHAUSTED),
             row(
                 "max_deadline_seconds",

@@ -5,9 +5,11 @@
 
 mod admission;
 mod assets;
+mod contact_watch;
 mod deadline;
 mod error;
 mod library;
+mod published;
 mod remembered_keys;
 mod revision_rule;
 mod robots;
@@ -20,6 +22,7 @@ mod view;
 mod workers;
 
 pub use assets::{ContentHash, NotAHash, Stored, Upload};
+pub use contact_watch::ContactWatch;
 pub use deadline::Patience;
 pub use error::ServiceError;
 pub use library::{Library, MeshReading, UnusableMesh};

@@ -5,15 +5,18 @@ use std::sync::Arc;
 use tonic::metadata::MetadataMap;
 use tonic::{Request, Response, Status};
 
+use super::contacts::ContactStream;
 use super::grpc_timeout::grpc_timeout;
 use super::handlers::{Handlers, respond};
 use crate::query::Answer;
-use crate::service::{ServiceError, View};
+use crate::service::{Patience, ServiceError, View};
 use crate::transports::wire::v1::queries_server::Queries;
 use crate::transports::wire::{from_proto, to_proto, v1};
 
 #[tonic::async_trait]
 impl Queries for Handlers {
+    type WatchContactsStream = ContactStream;
+
     async fn check_states(
         &self,
         request: Request<v1::CheckStatesRequest>,
@@ -99,6 +102,13 @@ impl Queries for Handlers {
         };
         respond(self.ask_for(&metadata, context.as_ref(), question).await)
     }
+
+    async fn watch_contacts(
+        &self,
+        request: Request<v1::WatchContactsRequest>,
+    ) -> Result<Response<ContactStream>, Status> {
+        respond(self.watch(request).await)
+    }
 }
 
 impl Handlers {
@@ -112,6 +122,16 @@ impl Handlers {
         let patience = from_proto::patience(grpc_timeout(metadata)?, context)?;
         let target = from_proto::target(context)?;
         self.service.ask(&target, patience, question).await
+    }
+
+    async fn watch(&self, request: Request<v1::WatchContactsRequest>) -> Result<ContactStream, ServiceError> {
+        let (metadata, _, message) = request.into_parts();
+        let patience = Patience { timeout: grpc_timeout(&metadata)?, time_budget: None };
+        let target = from_proto::target(message.context.as_ref())?;
+        let watch = self.service.watch_contacts(&target, patience, |snapshot, limits| {
+            from_proto::contact_question(&message, snapshot, limits)
+        });
+        Ok(ContactStream::new(watch.await?))
     }
 
     async fn ask(

@@ -4,6 +4,7 @@ mod assets;
 mod bad_input;
 mod caps;
 mod casts;
+mod contacts;
 mod fields;
 mod questions;
 mod revisions;

@@ -1,10 +1,11 @@
 //! The doors: the same messages in, the same messages out, whatever is between.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use clearance::limits::Limits;
 use clearance::query::Answer;
-use clearance::service::{Config, ContentHash, Patience, Service, ServiceError, Target, View};
+use clearance::service::{Config, ContactWatch, ContentHash, Patience, Service, ServiceError, Target, View};
 use clearance::transports::grpc::status_of;
 use clearance::transports::wire::v1::assets_client::AssetsClient;
 use clearance::transports::wire::v1::put_asset_request::Part;
@@ -13,7 +14,7 @@ use clearance::transports::wire::v1::robots_client::RobotsClient;
 use clearance::transports::wire::v1::scenes_client::ScenesClient;
 use clearance::transports::wire::{from_proto, to_proto, v1};
 use tonic::transport::Channel;
-use tonic::{Code, Status};
+use tonic::{Code, Status, Streaming};
 
 use super::daemon::RunningDaemon;
 
@@ -46,6 +47,12 @@ impl From<ServiceError> for Refusal {
 
 pub type Told<T> = Result<T, Refusal>;
 
+/// A stream of contacts.
+#[allow(async_fn_in_trait, reason = "the tests know both implementations")]
+pub trait Contacts {
+    async fn message(&mut self) -> Told<v1::WatchContactsResponse>;
+}
+
 /// A way to ask the daemon.
 #[allow(async_fn_in_trait, reason = "the tests know both implementations")]
 pub trait Door {
@@ -70,6 +77,7 @@ pub trait Door {
     async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
         self.create(v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() }).await
     }
+    async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts>;
 }
 
 /// No socket: messages are decoded and encoded, and nothing else.
@@ -224,6 +232,30 @@ impl Door for InProcess {
         })
         .await
     }
+
+    async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
+        let target = from_proto::target(request.context.as_ref())?;
+        let watch = self.service.watch_contacts(&target, Patience::default(), |snapshot, limits| {
+            from_proto::contact_question(&request, snapshot, limits)
+        });
+        Ok(InProcessContacts { watch: Some(watch.await?), messages: VecDeque::new() })
+    }
+}
+
+struct InProcessContacts {
+    watch: Option<ContactWatch>,
+    messages: VecDeque<v1::WatchContactsResponse>,
+}
+
+impl Contacts for InProcessContacts {
+    async fn message(&mut self) -> Told<v1::WatchContactsResponse> {
+        if self.messages.is_empty() {
+            let (watch, messages) = self.watch.take().unwrap().next(to_proto::contact_messages).await?;
+            self.watch = Some(watch);
+            self.messages.extend(messages);
+        }
+        Ok(self.messages.pop_front().unwrap())
+    }
 }
 
 /// HTTP/2 over loopback.
@@ -303,5 +335,15 @@ impl Door for Grpc {
 
     async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
         Ok(QueriesClient::new(self.channel.clone()).nearest_bodies(request).await?.into_inner())
+    }
+
+    async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
+        Ok(QueriesClient::new(self.channel.clone()).watch_contacts(request).await?.into_inner())
+    }
+}
+
+impl Contacts for Streaming<v1::WatchContactsResponse> {
+    async fn message(&mut self) -> Told<v1::WatchContactsResponse> {
+        Ok(Streaming::message(self).await?.expect("the stream ends with a reason"))
     }
 }

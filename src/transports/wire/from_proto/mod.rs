@@ -3,6 +3,7 @@
 
 mod answer;
 mod cast;
+mod contact;
 mod fields;
 mod geometry;
 mod path;
@@ -12,6 +13,7 @@ mod scene;
 
 pub use answer::{NotAnAnswer, answer};
 pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
+pub use contact::contact_question;
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::{BodyPage, body_page, change, scene_options};

@@ -2,6 +2,7 @@
 
 mod answer;
 mod cast;
+mod contact;
 mod count;
 mod geometry;
 mod health;
@@ -13,6 +14,7 @@ pub use answer::answer;
 pub use cast::{
     cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
 };
+pub use contact::contact_messages;
 pub use geometry::{pose, shape};
 pub use health::scene_health;
 pub use question::{check_states_request, collide_request, distance_request};

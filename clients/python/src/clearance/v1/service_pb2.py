@@ -22,86 +22,87 @@ _runtime_version.ValidateProtobufRuntimeVersion(
 _sym_db = _symbol_database.Default()
 
 
-from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
 from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
+from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
+from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import scene_pb2 as clearance_dot_v1_dot_scene__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x17\x63learance/v1/cast.proto\x1a\x19\x63learance/v1/health.proto\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\"Q\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12-\n\x0b\x62road_phase\x18\x02 \x01(\x0e\x32\x18.clearance.v1.BroadPhase\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x8a\x01\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\x12\x17\n\nmax_bodies\x18\x03 \x01(\rH\x00\x88\x01\x01\x12\x12\n\nafter_body\x18\x04 \x01(\x04\x42\r\n\x0b_max_bodies\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\xe9\x03\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x32\xeb\x03\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12[\n\x0eGetSceneHealth\x12#.clearance.v1.GetSceneHealthRequest\x1a$.clearance.v1.GetSceneHealthResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse2\xa3\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x32\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\x91\x05\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse\x12I\n\x08\x43\x61stRays\x12\x1d.clearance.v1.CastRaysRequest\x1a\x1e.clearance.v1.CastRaysResponse\x12O\n\nCastShapes\x12\x1f.clearance.v1.CastShapesRequest\x1a .clearance.v1.CastShapesResponse\x12\x61\n\x10\x43heckMovingPairs\x12%.clearance.v1.CheckMovingPairsRequest\x1a&.clearance.v1.CheckMovingPairsResponse\x12\x46\n\x07Overlap\x12\x1c.clearance.v1.OverlapRequest\x1a\x1d.clearance.v1.OverlapResponse\x12X\n\rNearestBodies\x12\".clearance.v1.NearestBodiesRequest\x1a#.clearance.v1.NearestBodiesResponse2b\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x19\x63learance/v1/health.proto\x1a\x17\x63learance/v1/cast.proto\x1a\x1a\x63learance/v1/contact.proto\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\"Q\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12-\n\x0b\x62road_phase\x18\x02 \x01(\x0e\x32\x18.clearance.v1.BroadPhase\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x8a\x01\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\x12\x17\n\nmax_bodies\x18\x03 \x01(\rH\x00\x88\x01\x01\x12\x12\n\nafter_body\x18\x04 \x01(\x04\x42\r\n\x0b_max_bodies\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\xe9\x03\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x32\xeb\x03\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12[\n\x0eGetSceneHealth\x12#.clearance.v1.GetSceneHealthRequest\x1a$.clearance.v1.GetSceneHealthResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse2\xa3\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x32\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\xed\x05\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse\x12I\n\x08\x43\x61stRays\x12\x1d.clearance.v1.CastRaysRequest\x1a\x1e.clearance.v1.CastRaysResponse\x12O\n\nCastShapes\x12\x1f.clearance.v1.CastShapesRequest\x1a .clearance.v1.CastShapesResponse\x12\x61\n\x10\x43heckMovingPairs\x12%.clearance.v1.CheckMovingPairsRequest\x1a&.clearance.v1.CheckMovingPairsResponse\x12\x46\n\x07Overlap\x12\x1c.clearance.v1.OverlapRequest\x1a\x1d.clearance.v1.OverlapResponse\x12X\n\rNearestBodies\x12\".clearance.v1.NearestBodiesRequest\x1a#.clearance.v1.NearestBodiesResponse\x12Z\n\rWatchContacts\x12\".clearance.v1.WatchContactsRequest\x1a#.clearance.v1.WatchContactsResponse0\x01\x32\x62\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'clearance.v1.service_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_ERRORREASON']._serialized_start=2035
-  _globals['_ERRORREASON']._serialized_end=2524
-  _globals['_CREATESCENEREQUEST']._serialized_start=174
-  _globals['_CREATESCENEREQUEST']._serialized_end=255
-  _globals['_CREATESCENERESPONSE']._serialized_start=257
-  _globals['_CREATESCENERESPONSE']._serialized_end=321
-  _globals['_LISTSCENESREQUEST']._serialized_start=323
-  _globals['_LISTSCENESREQUEST']._serialized_end=342
-  _globals['_LISTSCENESRESPONSE']._serialized_start=344
-  _globals['_LISTSCENESRESPONSE']._serialized_end=408
-  _globals['_GETSCENEREQUEST']._serialized_start=411
-  _globals['_GETSCENEREQUEST']._serialized_end=549
-  _globals['_GETSCENERESPONSE']._serialized_start=551
-  _globals['_GETSCENERESPONSE']._serialized_end=613
-  _globals['_DELETESCENEREQUEST']._serialized_start=615
-  _globals['_DELETESCENEREQUEST']._serialized_end=650
-  _globals['_DELETESCENERESPONSE']._serialized_start=652
-  _globals['_DELETESCENERESPONSE']._serialized_end=716
-  _globals['_APPLYREQUEST']._serialized_start=719
-  _globals['_APPLYREQUEST']._serialized_end=910
-  _globals['_APPLYRESPONSE']._serialized_start=912
-  _globals['_APPLYRESPONSE']._serialized_end=975
-  _globals['_HASASSETSREQUEST']._serialized_start=977
-  _globals['_HASASSETSREQUEST']._serialized_end=1011
-  _globals['_HASASSETSRESPONSE']._serialized_start=1013
-  _globals['_HASASSETSRESPONSE']._serialized_end=1049
-  _globals['_PUTASSETREQUEST']._serialized_start=1051
-  _globals['_PUTASSETREQUEST']._serialized_end=1138
-  _globals['_ASSETHEADER']._serialized_start=1140
-  _globals['_ASSETHEADER']._serialized_end=1184
-  _globals['_PUTASSETRESPONSE']._serialized_start=1186
-  _globals['_PUTASSETRESPONSE']._serialized_end=1260
-  _globals['_LOADROBOTRESPONSE']._serialized_start=1262
-  _globals['_LOADROBOTRESPONSE']._serialized_end=1322
-  _globals['_LISTROBOTSREQUEST']._serialized_start=1324
-  _globals['_LISTROBOTSREQUEST']._serialized_end=1343
-  _globals['_LISTROBOTSRESPONSE']._serialized_start=1345
-  _globals['_LISTROBOTSRESPONSE']._serialized_end=1409
-  _globals['_ROBOTSUMMARY']._serialized_start=1411
-  _globals['_ROBOTSUMMARY']._serialized_end=1451
-  _globals['_GETROBOTREQUEST']._serialized_start=1453
-  _globals['_GETROBOTREQUEST']._serialized_end=1482
-  _globals['_GETROBOTRESPONSE']._serialized_start=1484
-  _globals['_GETROBOTRESPONSE']._serialized_end=1543
-  _globals['_CHECKSTATESRESPONSE']._serialized_start=1545
-  _globals['_CHECKSTATESRESPONSE']._serialized_end=1604
-  _globals['_COLLIDERESPONSE']._serialized_start=1606
-  _globals['_COLLIDERESPONSE']._serialized_end=1661
-  _globals['_DISTANCERESPONSE']._serialized_start=1663
-  _globals['_DISTANCERESPONSE']._serialized_end=1719
-  _globals['_GETSERVERINFOREQUEST']._serialized_start=1721
-  _globals['_GETSERVERINFOREQUEST']._serialized_end=1743
-  _globals['_GETSERVERINFORESPONSE']._serialized_start=1746
-  _globals['_GETSERVERINFORESPONSE']._serialized_end=1919
-  _globals['_DOOR']._serialized_start=1921
-  _globals['_DOOR']._serialized_end=1958
-  _globals['_LIMIT']._serialized_start=1960
-  _globals['_LIMIT']._serialized_end=2032
-  _globals['_SCENES']._serialized_start=2527
-  _globals['_SCENES']._serialized_end=3018
-  _globals['_ASSETS']._serialized_start=3021
-  _globals['_ASSETS']._serialized_end=3184
-  _globals['_ROBOTS']._serialized_start=3187
-  _globals['_ROBOTS']._serialized_end=3429
-  _globals['_QUERIES']._serialized_start=3432
-  _globals['_QUERIES']._serialized_end=4089
-  _globals['_SERVER']._serialized_start=4091
-  _globals['_SERVER']._serialized_end=4189
+  _globals['_ERRORREASON']._serialized_start=2063
+  _globals['_ERRORREASON']._serialized_end=2552
+  _globals['_CREATESCENEREQUEST']._serialized_start=202
+  _globals['_CREATESCENEREQUEST']._serialized_end=283
+  _globals['_CREATESCENERESPONSE']._serialized_start=285
+  _globals['_CREATESCENERESPONSE']._serialized_end=349
+  _globals['_LISTSCENESREQUEST']._serialized_start=351
+  _globals['_LISTSCENESREQUEST']._serialized_end=370
+  _globals['_LISTSCENESRESPONSE']._serialized_start=372
+  _globals['_LISTSCENESRESPONSE']._serialized_end=436
+  _globals['_GETSCENEREQUEST']._serialized_start=439
+  _globals['_GETSCENEREQUEST']._serialized_end=577
+  _globals['_GETSCENERESPONSE']._serialized_start=579
+  _globals['_GETSCENERESPONSE']._serialized_end=641
+  _globals['_DELETESCENEREQUEST']._serialized_start=643
+  _globals['_DELETESCENEREQUEST']._serialized_end=678
+  _globals['_DELETESCENERESPONSE']._serialized_start=680
+  _globals['_DELETESCENERESPONSE']._serialized_end=744
+  _globals['_APPLYREQUEST']._serialized_start=747
+  _globals['_APPLYREQUEST']._serialized_end=938
+  _globals['_APPLYRESPONSE']._serialized_start=940
+  _globals['_APPLYRESPONSE']._serialized_end=1003
+  _globals['_HASASSETSREQUEST']._serialized_start=1005
+  _globals['_HASASSETSREQUEST']._serialized_end=1039
+  _globals['_HASASSETSRESPONSE']._serialized_start=1041
+  _globals['_HASASSETSRESPONSE']._serialized_end=1077
+  _globals['_PUTASSETREQUEST']._serialized_start=1079
+  _globals['_PUTASSETREQUEST']._serialized_end=1166
+  _globals['_ASSETHEADER']._serialized_start=1168
+  _globals['_ASSETHEADER']._serialized_end=1212
+  _globals['_PUTASSETRESPONSE']._serialized_start=1214
+  _globals['_PUTASSETRESPONSE']._serialized_end=1288
+  _globals['_LOADROBOTRESPONSE']._serialized_start=1290
+  _globals['_LOADROBOTRESPONSE']._serialized_end=1350
+  _globals['_LISTROBOTSREQUEST']._serialized_start=1352
+  _globals['_LISTROBOTSREQUEST']._serialized_end=1371
+  _globals['_LISTROBOTSRESPONSE']._serialized_start=1373
+  _globals['_LISTROBOTSRESPONSE']._serialized_end=1437
+  _globals['_ROBOTSUMMARY']._serialized_start=1439
+  _globals['_ROBOTSUMMARY']._serialized_end=1479
+  _globals['_GETROBOTREQUEST']._serialized_start=1481
+  _globals['_GETROBOTREQUEST']._serialized_end=1510
+  _globals['_GETROBOTRESPONSE']._serialized_start=1512
+  _globals['_GETROBOTRESPONSE']._serialized_end=1571
+  _globals['_CHECKSTATESRESPONSE']._serialized_start=1573
+  _globals['_CHECKSTATESRESPONSE']._serialized_end=1632
+  _globals['_COLLIDERESPONSE']._serialized_start=1634
+  _globals['_COLLIDERESPONSE']._serialized_end=1689
+  _globals['_DISTANCERESPONSE']._serialized_start=1691
+  _globals['_DISTANCERESPONSE']._serialized_end=1747
+  _globals['_GETSERVERINFOREQUEST']._serialized_start=1749
+  _globals['_GETSERVERINFOREQUEST']._serialized_end=1771
+  _globals['_GETSERVERINFORESPONSE']._serialized_start=1774
+  _globals['_GETSERVERINFORESPONSE']._serialized_end=1947
+  _globals['_DOOR']._serialized_start=1949
+  _globals['_DOOR']._serialized_end=1986
+  _globals['_LIMIT']._serialized_start=1988
+  _globals['_LIMIT']._serialized_end=2060
+  _globals['_SCENES']._serialized_start=2555
+  _globals['_SCENES']._serialized_end=3046
+  _globals['_ASSETS']._serialized_start=3049
+  _globals['_ASSETS']._serialized_end=3212
+  _globals['_ROBOTS']._serialized_start=3215
+  _globals['_ROBOTS']._serialized_end=3457
+  _globals['_QUERIES']._serialized_start=3460
+  _globals['_QUERIES']._serialized_end=4209
+  _globals['_SERVER']._serialized_start=4211
+  _globals['_SERVER']._serialized_end=4309
 # @@protoc_insertion_point(module_scope)
