@@ -43,6 +43,7 @@ impl Snapshot {
     /// Works out what is kept beside the edited content, where the edits touched what it depends on.
     pub(super) fn settle(&mut self, before: &Self, revision: Revision) {
         self.revision = revision;
+        self.tree.settle();
         if !self.allowed.is_as_in(&before.allowed) {
             self.settle_self_pairs();
         }
