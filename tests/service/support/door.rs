@@ -156,7 +156,7 @@ impl Door for InProcess {
     }
 
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
-        Ok(to_proto::scene_health(&self.service.scene_health(scene).await?))
+        Ok(to_proto::scene_health(&self.service.scene_health(scene, true).await?))
     }
 
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse> {
@@ -331,7 +331,7 @@ impl Door for Grpc {
     }
 
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
-        let request = v1::GetSceneHealthRequest { scene: scene.to_owned() };
+        let request = v1::GetSceneHealthRequest { scene: scene.to_owned(), against_rebuilt: true };
         Ok(ScenesClient::new(self.channel.clone()).get_scene_health(request).await?.into_inner().health.unwrap())
     }
 

@@ -179,9 +179,12 @@ class Scene:
                 contents.bodies_left = page.bodies_left
         return contents
 
-    def health(self) -> health_pb2.SceneHealth:
-        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now."""
-        request = health_pb2.GetSceneHealthRequest(scene=self.name)
+    def health(self, *, against_rebuilt: bool = False) -> health_pb2.SceneHealth:
+        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now.
+
+        With `against_rebuilt` a tree of the same boxes is built to compare with: `tree.rebuilt_surface_cost`.
+        """
+        request = health_pb2.GetSceneHealthRequest(scene=self.name, against_rebuilt=against_rebuilt)
         with translated():
             return self._client._scenes.GetSceneHealth(request, timeout=self._client._timeout).health
 
