@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
-use clearance::query::{CheckMotions, CheckStates, Contact, Context, Mode, Motions, Prepared, Verdict};
+use clearance::query::{CheckMotions, CheckStates, Context, Find, Mode, Motions, Prepared, Verdict};
 use clearance::scene::{Edit, Epoch, NewBody, Scene, Snapshot};
 
 use edges::{Edge, edges};
@@ -109,7 +109,7 @@ fn table(ways: &[Way], scenes: &[Arc<Snapshot>], edges: &[Edge], truth: &[bool])
 
 /// Certified, with the first contact or any, and at fixed steps.
 fn ways(steps: &[usize]) -> Vec<Way> {
-    let certified = |name: &str, contact| Way {
+    let certified = |name: &str, find| Way {
         name: name.to_owned(),
         check: Box::new(move |snapshot, edge| {
             let request = CheckMotions {
@@ -117,7 +117,7 @@ fn ways(steps: &[usize]) -> Vec<Way> {
                 positions: [edge.start.as_slice(), &edge.goal].concat(),
                 motions: Motions::Edges,
                 mode: Mode::All,
-                contact,
+                find,
                 resolution: CheckMotions::DEFAULT_RESOLUTION,
                 max_states: CheckMotions::DEFAULT_MAX_STATES,
                 context: Context::default(),
@@ -133,8 +133,8 @@ fn ways(steps: &[usize]) -> Vec<Way> {
         }),
     };
     let mut ways = vec![
-        certified("certified, first contact bracketed", Contact::First),
-        certified("certified, verdict", Contact::Any),
+        certified("certified, first contact bracketed", Find::FirstContact),
+        certified("certified, verdict", Find::AnyContact),
     ];
     ways.extend(steps.iter().map(|&steps| Way {
         name: format!("{steps} steps"),

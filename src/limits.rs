@@ -17,6 +17,8 @@ pub struct Limits {
     pub max_joint_values: usize,
     /// Pairs listed for one item of an answer.
     pub max_pairs: usize,
+    /// States that one motion may be looked at in.
+    pub max_motion_states: usize,
     /// Scenes of the daemon.
     pub max_scenes: usize,
     /// Bodies of one scene.
@@ -78,6 +80,7 @@ impl Default for Limits {
             max_items: 100_000,
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
+            max_motion_states: 100_000,
             max_scenes: 1_000,
             max_bodies: 2_000_000,
             max_robots_in_scene: 64,
@@ -134,6 +137,7 @@ impl Limits {
             max_items,
             max_joint_values,
             max_pairs,
+            max_motion_states,
             max_scenes,
             max_bodies,
             max_robots_in_scene,
@@ -167,6 +171,7 @@ impl Limits {
             row("max_items", max_items, "items per question", EXHAUSTED),
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
+            row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
             row("max_scenes", max_scenes, "scenes", EXHAUSTED),
             row("max_bodies", max_bodies, "bodies per scene", EXHAUSTED),
             row("max_robots_in_scene", max_robots_in_scene, "robots per scene", EXHAUSTED),

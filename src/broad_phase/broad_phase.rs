@@ -174,6 +174,12 @@ impl BroadPhase {
         }
     }
 
+    /// Of a tree: the surface cost that [`Health`] would give of one of the same boxes that is built at once.
+    #[must_use]
+    pub fn rebuilt_surface_cost(&self) -> Option<f64> {
+        if let Self::Tree(tree) = self { Some(tree.rebuilt().health().surface_cost) } else { None }
+    }
+
     /// Bytes of this version, those it shares with others included.
     #[must_use]
     pub fn memory(&self) -> usize {

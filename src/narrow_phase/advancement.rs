@@ -103,7 +103,7 @@ impl<'a> Pair<'a> {
 
     /// For how long from `time` the elements are proved to stay apart, given what was measured then.
     fn free_for(&self, time: f64, now: &Instant, found: &Separation) -> (f64, Option<Forecast<'a>>) {
-        let rest = 1.0 - time;
+        let rest = rest_of(time);
         let forecast = Forecast::new(self.a, self.b, self.approach, now, self.reaches, found.normal);
         let planned = forecast.as_ref().map_or(0.0, |forecast| forecast.free_for(rest));
         // Whatever the direction, no two points close in faster than this.
@@ -124,7 +124,7 @@ impl<'a> Pair<'a> {
                 return time;
             }
             let (free, _) = self.free_for(time, &now, &found);
-            if free >= 1.0 - time || time + free > bound {
+            if free >= rest_of(time) || time + free > bound {
                 return f64::INFINITY;
             }
             let next = earlier(time + free).max(time);
@@ -165,7 +165,7 @@ impl<'a> Pair<'a> {
             let mut stride = asked.resolution;
             if found.bracket.lower > 0.0 {
                 let (free, forecast) = self.free_for(time, &now, &found);
-                if free >= 1.0 - time {
+                if free >= rest_of(time) {
                     return closed(timing, open);
                 }
                 let next = earlier(time + free).max(time);
@@ -237,6 +237,11 @@ impl<'a> Pair<'a> {
 fn closed(timing: Timing, open: Option<[f64; 2]>) -> Timing {
     let Some([start, end]) = open else { return Timing { last: None, ..timing } };
     Timing { free_until: start, open_until: end, ..timing }
+}
+
+/// What is left of the motion, rounded up.
+fn rest_of(time: f64) -> f64 {
+    (1.0 - time).next_up()
 }
 
 /// A sum of times rounded down.

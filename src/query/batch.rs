@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
+use super::context::length;
 use super::motions::Motions;
 use super::pairs::Pairs;
-use super::request::{CheckMotions, CheckStates, Mode, PairQuery};
+use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Mode, PairQuery};
 use super::states::States;
 use crate::narrow_phase::Cost;
 use crate::scene::Snapshot;
@@ -66,6 +67,33 @@ impl<'a> Prepared<'a> {
     pub fn distance(snapshot: &'a Snapshot, request: &'a PairQuery) -> Result<Self, Refused> {
         let question = Question::Pairs(Pairs::distance(snapshot, request)?);
         Ok(Self { snapshot, mode: request.mode, question })
+    }
+
+    /// Which pairs are within a distance?
+    ///
+    /// # Errors
+    /// A distance that is negative or not finite, and what the question about states or subjects refuses.
+    pub fn clearance(snapshot: &'a Snapshot, request: &'a Clearance) -> Result<Self, Refused> {
+        length("within", request.within)?;
+        let (question, mode) = match &request.subjects {
+            ClearanceOf::States(states) => {
+                (Question::States(States::clearance(snapshot, states, request.within)?), states.mode)
+            }
+            ClearanceOf::Subjects(pairs) => {
+                (Question::Pairs(Pairs::clearance(snapshot, pairs, request.within)?), pairs.mode)
+            }
+        };
+        Ok(Self { snapshot, mode, question })
+    }
+
+    /// Number of items that a thread should take at a time, at least: fewer cost more in handing over than they gain.
+    #[must_use]
+    pub fn smallest_part(&self) -> usize {
+        match &self.question {
+            Question::States(_) | Question::Pairs(_) => 8,
+            // A motion is the work of tens of states.
+            Question::Motions(_) => 1,
+        }
     }
 
     /// Number of items.

@@ -56,7 +56,7 @@ impl<'a> Sieve<'a> {
 }
 
 /// A finite number that is not negative.
-fn length(field: &str, value: f64) -> Result<(), Refused> {
+pub(super) fn length(field: &str, value: f64) -> Result<(), Refused> {
     let problem = match value {
         v if !v.is_finite() => "is not finite".to_owned(),
         v if v < 0.0 => format!("is negative: {v}"),

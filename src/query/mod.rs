@@ -41,4 +41,6 @@ pub use item_batch::ItemBatch;
 pub use nearest_bodies::Neighbours;
 pub use overlap::Overlaps;
 pub use rays::Rays;
-pub use request::{CheckMotions, CheckStates, Contact, Context, Filter, Mode, Motions, PairQuery, Subject, Wants};
+pub use request::{
+    CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Filter, Find, Mode, Motions, PairQuery, Subject, Wants,
+};

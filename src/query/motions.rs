@@ -6,7 +6,7 @@
 use super::answer::{Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Verdict};
 use super::motion_course::{Event, Open, Outcome, Rules, explore};
 use super::motion_measure::{Gauge, Movable, Subject};
-use super::request::{CheckMotions, Contact, Motions as Layout, Wants};
+use super::request::{CheckMotions, Find, Motions as Layout, Wants};
 use super::robot_parts::{Placed, RobotParts};
 use super::search::{Plan, Search};
 use super::states::against_scene;
@@ -94,7 +94,7 @@ impl<'a> Motions<'a> {
         let rules = Rules {
             resolution: self.request.resolution,
             max_states: self.request.max_states as u64,
-            locate: self.request.contact == Contact::First,
+            locate: self.request.find == Find::FirstContact,
         };
         let outcome = explore(&mut gauge, &rules);
         if let Some(unclaimed) = gauge.unclaimed.take() {

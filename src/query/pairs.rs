@@ -15,6 +15,8 @@ pub(super) struct Pairs<'a> {
     sieve: Sieve<'a>,
     /// Margins do not count: neither the question's nor the scene's.
     touching: bool,
+    /// Every pair within this is listed, metres.
+    within: Option<f64>,
 }
 
 impl<'a> Pairs<'a> {
@@ -26,10 +28,16 @@ impl<'a> Pairs<'a> {
         Self::new(snapshot, request, Wants { distance: true, ..request.context.wants })
     }
 
+    /// Every pair that is not proved farther than `within` metres.
+    pub fn clearance(snapshot: &'a Snapshot, request: &'a PairQuery, within: f64) -> Result<Self, Refused> {
+        let wants = Wants { distance: true, pairs: true, ..request.context.wants };
+        Ok(Self { within: Some(within), ..Self::new(snapshot, request, wants)? })
+    }
+
     fn new(snapshot: &'a Snapshot, request: &'a PairQuery, wants: Wants) -> Result<Self, Refused> {
         let sieve = Sieve::new(snapshot, &request.context)?;
         request.items.iter().enumerate().try_for_each(|(item, subject)| check_revision(snapshot, item, subject))?;
-        Ok(Self { snapshot, request, wants, sieve, touching: false })
+        Ok(Self { snapshot, request, wants, sieve, touching: false, within: None })
     }
 
     /// For contacts that are tracked: what the filter names has to be there at the `first` revision only.
@@ -41,13 +49,13 @@ impl<'a> Pairs<'a> {
     ) -> Result<Self, Refused> {
         let context = &request.context;
         let sieve = if first { Sieve::new(snapshot, context)? } else { Sieve::unchecked(context) };
-        Ok(Self { snapshot, request, wants: context.wants, sieve, touching })
+        Ok(Self { snapshot, request, wants: context.wants, sieve, touching, within: None })
     }
 
     /// What is asked of every pair.
     pub(super) fn plan<'s>(&'s self, stop: &'s dyn Fn() -> bool) -> Plan<'s> {
         let largest = if self.touching { 0.0 } else { self.snapshot.largest_margin() };
-        Plan::new(&self.request.context, self.wants, largest, stop)
+        Plan::new(&self.request.context, self.wants, largest, stop).listing(self.within)
     }
 
     pub(super) fn snapshot(&self) -> &'a Snapshot {

@@ -116,12 +116,12 @@ pub enum Motions {
 
 /// What is wanted of a motion that collides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Contact {
+pub enum Find {
     /// The first contact, in a bracket as narrow as the resolution: all before it is proved free.
     #[default]
-    First,
+    FirstContact,
     /// That there is one; the bracket is as wide as it was when the first contact was met.
-    Any,
+    AnyContact,
 }
 
 /// Is the robot free all along these motions?
@@ -136,8 +136,8 @@ pub struct CheckMotions {
     pub motions: Motions,
     /// All motions or up to the first that is blocked.
     pub mode: Mode,
-    /// How much is wanted of contacts.
-    pub contact: Contact,
+    /// How much is wanted of a contact.
+    pub find: Find,
     /// A pair whose parts move by no more than this between two states, and that is not proved free between them, is
     /// left undecided there; metres, positive.
     pub resolution: f64,
@@ -173,6 +173,24 @@ pub enum Subject {
         /// Its frame in the world.
         pose: Pose,
     },
+}
+
+/// Which pairs are within a distance? Every one of them with its bracket, where the other questions want the nearest.
+#[derive(Clone, Debug)]
+pub struct Clearance {
+    /// What is held against the scene; the context's want `distance` or more is added, `cut_off` does not count.
+    pub subjects: ClearanceOf,
+    /// Metres, not negative: pairs proved farther apart than this are left out.
+    pub within: f64,
+}
+
+/// Whose clearance.
+#[derive(Clone, Debug)]
+pub enum ClearanceOf {
+    /// A robot's in some states, against itself and the scene.
+    States(CheckStates),
+    /// Bodies' and bare shapes'.
+    Subjects(PairQuery),
 }
 
 /// What touches (with `Collide`), or how far is the nearest (with `Distance`)?

@@ -14,6 +14,8 @@ pub(super) const ROUNDING_DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
 pub(super) struct States<'a> {
     request: &'a CheckStates,
     wants: Wants,
+    /// Every pair within this is listed, metres.
+    within: Option<f64>,
     robot: RobotParts<'a>,
 }
 
@@ -32,7 +34,14 @@ impl<'a> States<'a> {
             let problem = format!("{given} numbers are no whole number of states of {width} positions each");
             return Err(Refused::Invalid { field: "positions".to_owned(), problem });
         }
-        Ok(Self { request, wants: request.context.wants.closed(), robot })
+        Ok(Self { request, wants: request.context.wants.closed(), within: None, robot })
+    }
+
+    /// With every pair that is not proved farther than `within` metres.
+    pub fn clearance(snapshot: &'a Snapshot, request: &'a CheckStates, within: f64) -> Result<Self, Refused> {
+        let states = Self::new(snapshot, request)?;
+        let wants = Wants { distance: true, pairs: true, ..states.wants };
+        Ok(Self { wants, within: Some(within), ..states })
     }
 
     /// A robot that cannot move has one state, of no numbers.
@@ -53,7 +62,7 @@ impl<'a> States<'a> {
         }
         self.robot.place(positions, &mut scratch.placed);
         let largest_margin = self.robot.snapshot.largest_margin();
-        let plan = Plan::new(&self.request.context, self.wants, largest_margin, stop);
+        let plan = Plan::new(&self.request.context, self.wants, largest_margin, stop).listing(self.within);
         let mut own = Search::new(&plan);
         against_itself(&self.robot, &mut own, &scratch.placed, &mut scratch.near);
         let mut outer = Search::new(&plan);

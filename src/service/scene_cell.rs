@@ -80,8 +80,8 @@ impl SceneCell {
         }
     }
 
-    pub fn health(&self) -> SceneHealth {
-        SceneHealth::of(self.name.clone(), &self.published.all())
+    pub fn health(&self, against_rebuilt: bool) -> SceneHealth {
+        SceneHealth::of(self.name.clone(), &self.published.all(), against_rebuilt)
     }
 
     pub fn epoch(&self) -> Epoch {

@@ -22,6 +22,8 @@ pub struct SceneHealth {
     pub kept: Vec<KeptRevision>,
     /// How good the broad phase is.
     pub broad_phase: BroadPhaseHealth,
+    /// Where it was asked for, and the broad phase is a tree: the surface cost of a tree of the same boxes that is built at once.
+    pub rebuilt_surface_cost: Option<f64>,
 }
 
 /// A revision that can be asked.
@@ -34,8 +36,9 @@ pub struct KeptRevision {
 }
 
 impl SceneHealth {
-    /// Looks at the whole of a scene: milliseconds for a hundred thousand bodies.
-    pub(super) fn of(name: String, revisions: &Kept) -> Self {
+    /// Looks at the whole of a scene: milliseconds for a hundred thousand bodies, some ten times that if a tree is built to
+    /// compare with.
+    pub(super) fn of(name: String, revisions: &Kept, against_rebuilt: bool) -> Self {
         let (oldest, latest) = (revisions.oldest(), revisions.latest());
         let kept: Vec<KeptRevision> = revisions
             .iter()
@@ -51,6 +54,7 @@ impl SceneHealth {
             kept_bytes: oldest.memory().total() + later,
             kept,
             broad_phase: latest.broad_phase().health(),
+            rebuilt_surface_cost: if against_rebuilt { latest.broad_phase().rebuilt_surface_cost() } else { None },
         }
     }
 }

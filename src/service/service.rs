@@ -184,14 +184,14 @@ impl Service {
     ///
     /// # Errors
     /// The scene is not there, or too many questions are being answered.
-    pub async fn scene_health(&self, scene: &str) -> Result<SceneHealth, ServiceError> {
+    pub async fn scene_health(&self, scene: &str, against_rebuilt: bool) -> Result<SceneHealth, ServiceError> {
         self.check_open()?;
         let permit = self.queries.enter()?;
         let cell = self.scenes.get(scene)?;
         self.workers
             .answer(move || {
                 let _permit = permit;
-                Ok(cell.health())
+                Ok(cell.health(against_rebuilt))
             })
             .await
     }

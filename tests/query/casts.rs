@@ -11,7 +11,7 @@ use clearance::query::{
     DEFAULT_RESOLUTION, Filter, ItemBatch, Moved, Mover, MovingPairs, NearestBodies, Neighbours, Overlap, Overlaps,
     Rays, Refused, Region, Subject, Verdict, Way,
 };
-use clearance::scene::{BodyId, BroadPhaseKind, Edit, Epoch, NewBody, Party, Scene, SceneOptions, Snapshot};
+use clearance::scene::{BodyId, BroadPhaseKind, Edit, Epoch, NewBody, Party, Scene, SceneOptions};
 
 /// A linear congruential generator (Knuth's MMIX constants), in -1..1.
 struct Random(u64);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::query::{
-    Answer, CheckMotions, CheckStates, Contact, Context, Indeterminacy, ItemAnswer, Mode, Motions, Prepared, Refused,
+    Answer, CheckMotions, CheckStates, Context, Find, Indeterminacy, ItemAnswer, Mode, Motions, Prepared, Refused,
     Side, Verdict,
 };
 use clearance::robot::{MeshRequest, ModelOptions, RobotModel};
@@ -56,7 +56,7 @@ fn question(positions: &[f64]) -> CheckMotions {
         positions: positions.to_vec(),
         motions: Motions::Edges,
         mode: Mode::All,
-        contact: Contact::First,
+        find: Find::FirstContact,
         resolution: CheckMotions::DEFAULT_RESOLUTION,
         max_states: CheckMotions::DEFAULT_MAX_STATES,
         context: Context::default(),
@@ -111,7 +111,7 @@ fn the_first_contact_of_a_turn_is_bracketed() {
     assert_eq!(pair.verdict, Verdict::Collision);
     assert_eq!(state(&snapshot, "arm", &[0.0, RAISED], &[3.0, RAISED], t1), Verdict::Collision);
     assert!(motion.states < 60, "{motion:?}");
-    let any = CheckMotions { contact: Contact::Any, ..question(&[0.0, RAISED, 3.0, RAISED]) };
+    let any = CheckMotions { find: Find::AnyContact, ..question(&[0.0, RAISED, 3.0, RAISED]) };
     let any = one(&snapshot, &any);
     let loose = any.motion.unwrap();
     let [l0, l1] = loose.reached.unwrap();
@@ -203,14 +203,14 @@ fn a_margin_is_a_verdict_of_its_own() {
     let mut world = scene(CRANE, &[ball]);
     let snapshot = world.snapshot();
     let positions = [0.0, RAISED, FRAC_PI_2, RAISED];
-    let with = |snapshot: &Snapshot, margin: f64, contact| {
+    let with = |snapshot: &Snapshot, margin: f64, find| {
         let context = Context { margin, ..Context::default() };
-        one(snapshot, &CheckMotions { contact, context, ..question(&positions) })
+        one(snapshot, &CheckMotions { find, context, ..question(&positions) })
     };
-    for contact in [Contact::First, Contact::Any] {
-        assert_eq!(with(&snapshot, 0.0, contact).verdict, Verdict::Free);
-        assert_eq!(with(&snapshot, 0.005, contact).verdict, Verdict::Free);
-        let near = with(&snapshot, 0.02, contact);
+    for find in [Find::FirstContact, Find::AnyContact] {
+        assert_eq!(with(&snapshot, 0.0, find).verdict, Verdict::Free);
+        assert_eq!(with(&snapshot, 0.005, find).verdict, Verdict::Free);
+        let near = with(&snapshot, 0.02, find);
         assert_eq!(near.verdict, Verdict::Margin, "{near:?}");
         let motion = near.motion.unwrap();
         let [t0, t1] = motion.reached.unwrap();
@@ -219,13 +219,17 @@ fn a_margin_is_a_verdict_of_its_own() {
         let beside = (0.12f64.powi(2) - 0.11f64.powi(2)).sqrt() + 0.05;
         let entered = (FRAC_PI_2 - libm::asin(beside / 0.6)) / FRAC_PI_2;
         assert!(t0 <= entered && entered <= t1 && motion.free_until == t0, "{motion:?} {entered}");
-        assert!(contact == Contact::Any || t1 - t0 < 1e-3, "{motion:?}");
+        assert!(find == Find::AnyContact || t1 - t0 < 1e-3, "{motion:?}");
         assert_eq!(near.nearest.unwrap().verdict, Verdict::Margin);
     }
     let boom = Party::Link { robot: "arm".to_owned(), link: "boom".to_owned() };
     let entry = Edit::SetPairMargin { a: boom, b: Party::Body("ball".into()), margin: Some(0.005) };
     world.apply(&[entry], None).unwrap();
-    assert_eq!(with(&world.snapshot(), 0.02, Contact::First).verdict, Verdict::Free, "the pair's own margin counts");
+    assert_eq!(
+        with(&world.snapshot(), 0.02, Find::FirstContact).verdict,
+        Verdict::Free,
+        "the pair's own margin counts"
+    );
 }
 
 /// The rod's top face slides along the underside of a ball that it just touches: neither free nor, within rounding, a collision
@@ -303,6 +307,7 @@ fn bad_motions_are_refused_by_item_and_field() {
     let refused = |question: &CheckMotions| match Prepared::check_motions(&snapshot, question).err().unwrap() {
         Refused::Invalid { field, problem } => format!("{field}: {problem}"),
         Refused::NotFound { what, name, .. } => format!("no {what} {name}"),
+        other @ Refused::Gone { .. } => panic!("{other:?}"),
     };
     assert!(
         refused(&question(&[0.0; 6])).starts_with("positions: 6 numbers"),
@@ -380,7 +385,7 @@ fn hold_the_ur5_against_samples(each: usize, samples: usize) {
         let snapshot = &scenes[edge.scene];
         let item = one(snapshot, &request);
         hold_against_samples(snapshot, &edge.start, &edge.goal, &item, samples);
-        let any = one(snapshot, &CheckMotions { contact: Contact::Any, ..request });
+        let any = one(snapshot, &CheckMotions { find: Find::AnyContact, ..request });
         assert_eq!(any.verdict, item.verdict, "{edge:?}");
         match item.verdict {
             Verdict::Free => count[0] += 1,

@@ -109,6 +109,39 @@ impl Queries for Handlers {
     ) -> Result<Response<ContactStream>, Status> {
         respond(self.watch(request).await)
     }
+
+    async fn check_motions(
+        &self,
+        request: Request<v1::CheckMotionsRequest>,
+    ) -> Result<Response<v1::CheckMotionsResponse>, Status> {
+        let (metadata, _, message) = request.into_parts();
+        let context = message.context.clone();
+        let question = move |view: &View| view.check_motions(&from_proto::check_motions(&message, view.snapshot())?);
+        let answer = self.ask_for_motions(&metadata, context.as_ref(), question).await;
+        respond(answer.map(|(answer, motions, bulk)| v1::CheckMotionsResponse { answer: Some(answer), motions, bulk }))
+    }
+
+    async fn check_path(
+        &self,
+        request: Request<v1::CheckPathRequest>,
+    ) -> Result<Response<v1::CheckPathResponse>, Status> {
+        let (metadata, _, message) = request.into_parts();
+        let context = message.context.clone();
+        let question = move |view: &View| view.check_motions(&from_proto::check_path(&message, view.snapshot())?);
+        let answer = self.ask_for_motions(&metadata, context.as_ref(), question).await;
+        respond(answer.map(|(answer, motions, bulk)| v1::CheckPathResponse { answer: Some(answer), motions, bulk }))
+    }
+
+    async fn clearance(
+        &self,
+        request: Request<v1::ClearanceRequest>,
+    ) -> Result<Response<v1::ClearanceResponse>, Status> {
+        let (metadata, _, message) = request.into_parts();
+        let (context, library) = (message.context.clone(), Arc::clone(self.service.library()));
+        let question = move |view: &View| view.clearance(&from_proto::clearance(&message, view.snapshot(), &library)?);
+        let answer = self.ask(&metadata, context.as_ref(), question).await;
+        respond(answer.map(|answer| v1::ClearanceResponse { answer: Some(answer) }))
+    }
 }
 
 impl Handlers {
@@ -143,5 +176,22 @@ impl Handlers {
         let form = from_proto::answer_form(context)?;
         let encoded = move |view: &View| Ok(to_proto::answer(&question(view)?, form));
         self.ask_for(metadata, context, encoded).await
+    }
+
+    async fn ask_for_motions(
+        &self,
+        metadata: &MetadataMap,
+        context: Option<&v1::Context>,
+        question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
+    ) -> Result<(v1::Answer, Vec<v1::Motion>, Option<v1::BulkMotions>), ServiceError> {
+        let patience = from_proto::patience(grpc_timeout(metadata)?, context)?;
+        let form = from_proto::answer_form(context)?;
+        let target = from_proto::target(context)?;
+        let encoded = move |view: &View| {
+            let answer = question(view)?;
+            let (motions, bulk) = to_proto::motions(&answer, form);
+            Ok((to_proto::answer(&answer, form), motions, bulk))
+        };
+        self.service.ask(&target, patience, encoded).await
     }
 }

@@ -38,7 +38,8 @@ impl Scenes for Handlers {
         &self,
         request: Request<v1::GetSceneHealthRequest>,
     ) -> Result<Response<v1::GetSceneHealthResponse>, Status> {
-        let health = self.service.scene_health(&request.into_inner().scene).await;
+        let request = request.into_inner();
+        let health = self.service.scene_health(&request.scene, request.against_rebuilt).await;
         respond(health.map(|health| v1::GetSceneHealthResponse { health: Some(to_proto::scene_health(&health)) }))
     }
 

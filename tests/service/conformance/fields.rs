@@ -63,7 +63,10 @@ async fn what_is_under_terrain_collides_and_what_is_over_it_is_as_far_as_the_sur
     bracketed(&nearest(door, ball(8.5)).await, 0.4);
     // Straight over the top; the columns of six cells meet there.
     bracketed(&nearest(door, placed(sphere(0.1), at(2.0, 0.5, 12.5))).await, 0.4);
-    let contents = door.get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None }).await.unwrap();
+    let contents = door
+        .get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), ..v1::GetSceneRequest::default() })
+        .await
+        .unwrap();
     let body = &contents.bodies[0];
     let bounds = body.bounds.as_ref().unwrap();
     assert_eq!(body.shape_kind, "height_field");
@@ -159,7 +162,10 @@ async fn terrain_and_clouds_that_cannot_be_are_refused_by_field(door: &impl Door
     let missing = cloud(numbers(Form::Sha256(announced(b"?").sha256)));
     let refusal = door.apply(apply(vec![add("bad", shape(missing), at(0.0, 0.0, 0.0))])).await.unwrap_err();
     assert_eq!(refusal.code, Code::NotFound, "{refusal:?}");
-    let contents = door.get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None }).await.unwrap();
+    let contents = door
+        .get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), ..v1::GetSceneRequest::default() })
+        .await
+        .unwrap();
     assert_eq!((contents.revision, contents.bodies.len()), (0, 0));
 }
 

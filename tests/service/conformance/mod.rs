@@ -6,6 +6,7 @@ mod caps;
 mod casts;
 mod contacts;
 mod fields;
+mod motions;
 mod questions;
 mod revisions;
 mod robots;

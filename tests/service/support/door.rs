@@ -72,6 +72,9 @@ pub trait Door {
     async fn check_moving_pairs(&self, request: v1::CheckMovingPairsRequest) -> Told<v1::CheckMovingPairsResponse>;
     async fn overlap(&self, request: v1::OverlapRequest) -> Told<v1::OverlapResponse>;
     async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse>;
+    async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse>;
+    async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse>;
+    async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer>;
 
     /// A scene with the default options.
     async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
@@ -109,6 +112,22 @@ impl InProcess {
         let target = from_proto::target(context.as_ref())?;
         Ok(self.service.ask(&target, patience, question).await?)
     }
+
+    async fn ask_for_motions(
+        &self,
+        context: Option<v1::Context>,
+        question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
+    ) -> Told<(v1::Answer, Vec<v1::Motion>, Option<v1::BulkMotions>)> {
+        let form = from_proto::answer_form(context.as_ref())?;
+        let patience = from_proto::patience(None, context.as_ref())?;
+        let target = from_proto::target(context.as_ref())?;
+        let encoded = move |view: &View| {
+            let answer = question(view)?;
+            let (motions, bulk) = to_proto::motions(&answer, form);
+            Ok((to_proto::answer(&answer, form), motions, bulk))
+        };
+        Ok(self.service.ask(&target, patience, encoded).await?)
+    }
 }
 
 impl Door for InProcess {
@@ -137,7 +156,7 @@ impl Door for InProcess {
     }
 
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
-        Ok(to_proto::scene_health(&self.service.scene_health(scene).await?))
+        Ok(to_proto::scene_health(&self.service.scene_health(scene, true).await?))
     }
 
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse> {
@@ -185,6 +204,32 @@ impl Door for InProcess {
         let library = Arc::clone(self.service.library());
         self.ask(request.context.clone(), move |view| {
             view.distance(&from_proto::distance(&request, view.snapshot(), &library)?)
+        })
+        .await
+    }
+
+    async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse> {
+        let (answer, motions, bulk) = self
+            .ask_for_motions(request.context.clone(), move |view| {
+                view.check_motions(&from_proto::check_motions(&request, view.snapshot())?)
+            })
+            .await?;
+        Ok(v1::CheckMotionsResponse { answer: Some(answer), motions, bulk })
+    }
+
+    async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse> {
+        let (answer, motions, bulk) = self
+            .ask_for_motions(request.context.clone(), move |view| {
+                view.check_motions(&from_proto::check_path(&request, view.snapshot())?)
+            })
+            .await?;
+        Ok(v1::CheckPathResponse { answer: Some(answer), motions, bulk })
+    }
+
+    async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
+        let library = Arc::clone(self.service.library());
+        self.ask(request.context.clone(), move |view| {
+            view.clearance(&from_proto::clearance(&request, view.snapshot(), &library)?)
         })
         .await
     }
@@ -286,7 +331,7 @@ impl Door for Grpc {
     }
 
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
-        let request = v1::GetSceneHealthRequest { scene: scene.to_owned() };
+        let request = v1::GetSceneHealthRequest { scene: scene.to_owned(), against_rebuilt: true };
         Ok(ScenesClient::new(self.channel.clone()).get_scene_health(request).await?.into_inner().health.unwrap())
     }
 
@@ -315,6 +360,18 @@ impl Door for Grpc {
 
     async fn distance(&self, request: v1::DistanceRequest) -> Told<v1::Answer> {
         Ok(QueriesClient::new(self.channel.clone()).distance(request).await?.into_inner().answer.unwrap())
+    }
+
+    async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).check_motions(request).await?.into_inner())
+    }
+
+    async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).check_path(request).await?.into_inner())
+    }
+
+    async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
+        Ok(QueriesClient::new(self.channel.clone()).clearance(request).await?.into_inner().answer.unwrap())
     }
 
     async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse> {

@@ -47,6 +47,7 @@ from .errors import (
     RevisionGone,
     Unavailable,
 )
+from .motions import MotionsAnswer, along
 from .poses import pose, pose_from_matrix, random_pose
 from .robots import Joint, Robot
 from .shapes import (
@@ -86,6 +87,7 @@ __all__ = [
     "ItemAnswer",
     "Joint",
     "LimitExceeded",
+    "MotionsAnswer",
     "NearestItem",
     "NotFound",
     "OverlapItem",
@@ -101,6 +103,7 @@ __all__ = [
     "add_body",
     "add_robot",
     "allow_collision",
+    "along",
     "ball_region",
     "ball_swept",
     "body",

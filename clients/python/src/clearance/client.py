@@ -13,13 +13,16 @@ from numpy.typing import ArrayLike
 from .answers import Applied, ItemAnswer, StatesAnswer
 from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
 from .edits import BodyName, body_ref
+from . import motions as motion_messages
 from .errors import translated
+from .motions import MotionsAnswer
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_mode
 from .v1 import cast_pb2 as cast
 from .v1 import geometry_pb2 as geometry
 from .v1 import health_pb2
+from .v1 import motion_pb2 as motion
 from .v1 import query_pb2 as query
 from .v1 import robot_pb2, scene_pb2
 from .v1 import service_pb2 as service
@@ -176,9 +179,12 @@ class Scene:
                 contents.bodies_left = page.bodies_left
         return contents
 
-    def health(self) -> health_pb2.SceneHealth:
-        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now."""
-        request = health_pb2.GetSceneHealthRequest(scene=self.name)
+    def health(self, *, against_rebuilt: bool = False) -> health_pb2.SceneHealth:
+        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now.
+
+        With `against_rebuilt` a tree of the same boxes is built to compare with: `tree.rebuilt_surface_cost`.
+        """
+        request = health_pb2.GetSceneHealthRequest(scene=self.name, against_rebuilt=against_rebuilt)
         with translated():
             return self._client._scenes.GetSceneHealth(request, timeout=self._client._timeout).health
 
@@ -238,6 +244,127 @@ class Scene:
         with translated():
             answer = self._client._queries.CheckStates(request, timeout=timeout or self._client._timeout).answer
         _check_count(positions, len(answer.items))
+        return [ItemAnswer.of(item) for item in answer.items]
+
+    def check_motions(
+        self,
+        robot: str,
+        starts: ArrayLike,
+        goals: ArrayLike,
+        *,
+        first_contact: bool = True,
+        stop_at_first: bool = False,
+        resolution: Optional[float] = None,
+        max_states: Optional[int] = None,
+        margin: float = 0.0,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> MotionsAnswer:
+        """Is the robot free all along these motions? Proved between states, not sampled.
+
+        `starts` and `goals` have shape (n, degrees of freedom); radians, metres for sliding joints. A motion is the straight
+        line between them in every number, and joints without limits are not wrapped. With `first_contact=False` a motion
+        that collides is left as soon as a contact is met, and its bracket is wide. `resolution` is how little a pair may
+        move, in metres, before what is not proved is left undecided; `max_states` how many states a motion is looked at in.
+        """
+        request = motion.CheckMotionsRequest(
+            context=self._context("verdict", margin, None, "default", at_least),
+            robot=robot,
+            positions=motion_messages.edges(starts, goals),
+            mode=motion_messages.mode(stop_at_first),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+        request.context.answer_form = query.ANSWER_FORM_BULK
+        with translated():
+            response = self._client._queries.CheckMotions(request, timeout=timeout or self._client._timeout)
+        answer = MotionsAnswer.of(response)
+        _check_count(starts, len(answer.verdicts))
+        return answer
+
+    def check_path(
+        self,
+        robot: str,
+        waypoints: ArrayLike,
+        *,
+        first_contact: bool = True,
+        stop_at_first: bool = True,
+        resolution: Optional[float] = None,
+        max_states: Optional[int] = None,
+        margin: float = 0.0,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> MotionsAnswer:
+        """Is the robot free all along a path? As :meth:`check_motions`, from each waypoint to the next.
+
+        `waypoints` has shape (n + 1, degrees of freedom); the answer has n elements, and `stopped_at` is the first that is
+        blocked.
+        """
+        request = motion.CheckPathRequest(
+            context=self._context("verdict", margin, None, "default", at_least),
+            robot=robot,
+            waypoints=motion_messages.doubles(waypoints, "waypoints", "(n, degrees of freedom)", 2),
+            mode=motion_messages.mode(stop_at_first),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+        request.context.answer_form = query.ANSWER_FORM_BULK
+        with translated():
+            response = self._client._queries.CheckPath(request, timeout=timeout or self._client._timeout)
+        answer = MotionsAnswer.of(response)
+        if len(answer.verdicts) != max(len(np.asarray(waypoints)) - 1, 0):
+            raise ValueError(f"waypoints: {np.shape(waypoints)[1]} numbers a waypoint do not fit the robot")
+        return answer
+
+    def clearance(
+        self,
+        within: float,
+        *subjects: Subject,
+        want: str = "distance",
+        margin: float = 0.0,
+        max_pairs: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[ItemAnswer]:
+        """Which bodies are within that many metres of each subject? Each answer's `pairs` has them all, with their brackets.
+
+        Without subjects: which pairs of all bodies are that near.
+        """
+        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request.items.items.extend(_subjects(subjects))
+        return self._clearance(request, timeout)
+
+    def clearance_of_states(
+        self,
+        robot: str,
+        positions: ArrayLike,
+        within: float,
+        *,
+        want: str = "distance",
+        margin: float = 0.0,
+        max_pairs: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[ItemAnswer]:
+        """Which pairs of links, and of links and bodies, are within that many metres in each state?"""
+        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request.states.robot = robot
+        request.states.positions.CopyFrom(
+            motion_messages.doubles(positions, "positions", "(n, degrees of freedom)", 2)
+        )
+        answers = self._clearance(request, timeout)
+        _check_count(positions, len(answers))
+        return answers
+
+    def _clearance_request(
+        self, within: float, want: str, margin: float, max_pairs: Optional[int], at_least: Optional[int]
+    ) -> motion.ClearanceRequest:
+        context = self._context(want, margin, None, "default", at_least)
+        if max_pairs is not None:
+            context.max_pairs = max_pairs
+        return motion.ClearanceRequest(context=context, within=within)
+
+    def _clearance(self, request: motion.ClearanceRequest, timeout: Optional[float]) -> list[ItemAnswer]:
+        with translated():
+            answer = self._client._queries.Clearance(request, timeout=timeout or self._client._timeout).answer
         return [ItemAnswer.of(item) for item in answer.items]
 
     def distance(

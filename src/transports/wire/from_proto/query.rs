@@ -110,12 +110,21 @@ fn pair_query(
     snapshot: &Snapshot,
     library: &Library,
 ) -> Result<PairQuery, ServiceError> {
-    let subject = |(index, item)| subject(&Path::root_item("items", index), item, snapshot, library);
     Ok(PairQuery {
-        items: items.iter().enumerate().map(subject).collect::<Result<_, ServiceError>>()?,
+        items: subjects(items, snapshot, library)?,
         mode: mode(mode_number)?,
         context: context(context_message, snapshot)?,
     })
+}
+
+/// What is held against the scene, item by item.
+pub(super) fn subjects(
+    items: &[v1::Subject],
+    snapshot: &Snapshot,
+    library: &Library,
+) -> Result<Vec<Subject>, ServiceError> {
+    let subject = |(index, item)| subject(&Path::root_item("items", index), item, snapshot, library);
+    items.iter().enumerate().map(subject).collect()
 }
 
 /// What a question is about.
@@ -215,7 +224,7 @@ pub(super) fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<
     }
 }
 
-fn mode(number: i32) -> Result<Mode, ServiceError> {
+pub(super) fn mode(number: i32) -> Result<Mode, ServiceError> {
     match v1::Mode::try_from(number) {
         Ok(v1::Mode::Unspecified | v1::Mode::All) => Ok(Mode::All),
         Ok(v1::Mode::StopAtFirst) => Ok(Mode::StopAtFirst),

@@ -120,6 +120,7 @@ pub(super) fn indeterminacy(why: Indeterminacy) -> v1::Indeterminacy {
         Indeterminacy::Rounding => v1::Indeterminacy::Rounding,
         Indeterminacy::IterationLimit => v1::Indeterminacy::IterationLimit,
         Indeterminacy::TimeLimit => v1::Indeterminacy::TimeLimit,
+        Indeterminacy::Resolution => v1::Indeterminacy::Resolution,
     }
 }
 

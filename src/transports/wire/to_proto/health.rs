@@ -23,17 +23,24 @@ pub fn scene_health(health: &SceneHealth) -> v1::SceneHealth {
         }),
         kept_bytes: health.kept_bytes as u64,
         kept: health.kept.iter().map(kept).collect(),
-        broad_phase: Some(broad_phase(&health.broad_phase)),
+        broad_phase: Some(broad_phase(health)),
     }
 }
 
-fn broad_phase(health: &BroadPhaseHealth) -> BroadPhase {
-    match health {
+fn broad_phase(health: &SceneHealth) -> BroadPhase {
+    match &health.broad_phase {
         BroadPhaseHealth::Tree(tree) => BroadPhase::Tree(v1::TreeHealth {
-            entries: tree.leaves as u64,
-            depth: tree.height,
-            least_depth: tree.least_height,
+            entries: tree.entries as u64,
+            depth: tree.depth,
+            least_depth: tree.least_depth,
             surface_cost: tree.surface_cost,
+            rebuilt_surface_cost: health.rebuilt_surface_cost,
+            stale: tree.stale,
+            fill: tree.fill,
+            debt: tree.debt,
+            upkeep: tree.upkeep,
+            rounds: tree.rounds,
+            bytes_per_entry: tree.bytes_per_entry,
         }),
         BroadPhaseHealth::SweepAndPrune(sweep) => BroadPhase::SweepAndPrune(v1::SweepHealth {
             entries: sweep.entries as u64,

@@ -6,6 +6,7 @@ mod contact;
 mod count;
 mod geometry;
 mod health;
+mod motion;
 mod question;
 mod robot;
 mod scene;
@@ -17,6 +18,7 @@ pub use cast::{
 pub use contact::contact_messages;
 pub use geometry::{pose, shape};
 pub use health::scene_health;
+pub use motion::{check_motions_request, check_path_request, clearance_request, motions};
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};
 pub use scene::{add_body, apply_response, body_ref, door, limit, scene_contents, scene_summary};

@@ -24,7 +24,7 @@ _sym_db = _symbol_database.Default()
 
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x19\x63learance/v1/health.proto\x12\x0c\x63learance.v1\"&\n\x15GetSceneHealthRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"C\n\x16GetSceneHealthResponse\x12)\n\x06health\x18\x01 \x01(\x0b\x32\x19.clearance.v1.SceneHealth\"\xda\x02\n\x0bSceneHealth\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05\x65poch\x18\x02 \x01(\x04\x12\x10\n\x08revision\x18\x03 \x01(\x04\x12\x0e\n\x06\x62odies\x18\x04 \x01(\x04\x12)\n\x06memory\x18\x05 \x01(\x0b\x32\x19.clearance.v1.SceneMemory\x12\x12\n\nkept_bytes\x18\x06 \x01(\x04\x12(\n\x04kept\x18\x07 \x03(\x0b\x32\x1a.clearance.v1.KeptRevision\x12(\n\x04tree\x18\x08 \x01(\x0b\x32\x18.clearance.v1.TreeHealthH\x00\x12\x34\n\x0fsweep_and_prune\x18\t \x01(\x0b\x32\x19.clearance.v1.SweepHealthH\x00\x12\x34\n\nexhaustive\x18\n \x01(\x0b\x32\x1e.clearance.v1.ExhaustiveHealthH\x00\x42\r\n\x0b\x62road_phase\"R\n\x0bSceneMemory\x12\x0e\n\x06\x62odies\x18\x01 \x01(\x04\x12\r\n\x05names\x18\x02 \x01(\x04\x12\x13\n\x0b\x62road_phase\x18\x03 \x01(\x04\x12\x0f\n\x07\x65ntries\x18\x04 \x01(\x04\"7\n\x0cKeptRevision\x12\x10\n\x08revision\x18\x01 \x01(\x04\x12\x15\n\rwritten_bytes\x18\x02 \x01(\x04\"W\n\nTreeHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\r\n\x05\x64\x65pth\x18\x02 \x01(\r\x12\x13\n\x0bleast_depth\x18\x03 \x01(\r\x12\x14\n\x0csurface_cost\x18\x04 \x01(\x01\"\xa3\x01\n\x0bSweepHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\x0c\n\x04\x61xis\x18\x02 \x01(\r\x12\x15\n\rmeeting_share\x18\x03 \x01(\x01\x12\x1a\n\x12\x62\x65st_meeting_share\x18\x04 \x01(\x01\x12\x0f\n\x07\x66illing\x18\x05 \x01(\x01\x12\x1c\n\x14\x63hanges_since_choice\x18\x06 \x01(\x04\x12\x13\n\x0b\x66ree_places\x18\x07 \x01(\x04\"8\n\x10\x45xhaustiveHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\x13\n\x0b\x66ree_places\x18\x02 \x01(\x04\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x19\x63learance/v1/health.proto\x12\x0c\x63learance.v1\"?\n\x15GetSceneHealthRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12\x17\n\x0f\x61gainst_rebuilt\x18\x02 \x01(\x08\"C\n\x16GetSceneHealthResponse\x12)\n\x06health\x18\x01 \x01(\x0b\x32\x19.clearance.v1.SceneHealth\"\xda\x02\n\x0bSceneHealth\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\r\n\x05\x65poch\x18\x02 \x01(\x04\x12\x10\n\x08revision\x18\x03 \x01(\x04\x12\x0e\n\x06\x62odies\x18\x04 \x01(\x04\x12)\n\x06memory\x18\x05 \x01(\x0b\x32\x19.clearance.v1.SceneMemory\x12\x12\n\nkept_bytes\x18\x06 \x01(\x04\x12(\n\x04kept\x18\x07 \x03(\x0b\x32\x1a.clearance.v1.KeptRevision\x12(\n\x04tree\x18\x08 \x01(\x0b\x32\x18.clearance.v1.TreeHealthH\x00\x12\x34\n\x0fsweep_and_prune\x18\t \x01(\x0b\x32\x19.clearance.v1.SweepHealthH\x00\x12\x34\n\nexhaustive\x18\n \x01(\x0b\x32\x1e.clearance.v1.ExhaustiveHealthH\x00\x42\r\n\x0b\x62road_phase\"R\n\x0bSceneMemory\x12\x0e\n\x06\x62odies\x18\x01 \x01(\x04\x12\r\n\x05names\x18\x02 \x01(\x04\x12\x13\n\x0b\x62road_phase\x18\x03 \x01(\x04\x12\x0f\n\x07\x65ntries\x18\x04 \x01(\x04\"7\n\x0cKeptRevision\x12\x10\n\x08revision\x18\x01 \x01(\x04\x12\x15\n\rwritten_bytes\x18\x02 \x01(\x04\"\xf7\x01\n\nTreeHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\r\n\x05\x64\x65pth\x18\x02 \x01(\r\x12\x13\n\x0bleast_depth\x18\x03 \x01(\r\x12\x14\n\x0csurface_cost\x18\x04 \x01(\x01\x12!\n\x14rebuilt_surface_cost\x18\x05 \x01(\x01H\x00\x88\x01\x01\x12\r\n\x05stale\x18\x06 \x01(\x01\x12\x0c\n\x04\x66ill\x18\x07 \x01(\x01\x12\x0c\n\x04\x64\x65\x62t\x18\x08 \x01(\x01\x12\x0e\n\x06upkeep\x18\t \x01(\x04\x12\x0e\n\x06rounds\x18\n \x01(\x04\x12\x17\n\x0f\x62ytes_per_entry\x18\x0b \x01(\x01\x42\x17\n\x15_rebuilt_surface_cost\"\xa3\x01\n\x0bSweepHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\x0c\n\x04\x61xis\x18\x02 \x01(\r\x12\x15\n\rmeeting_share\x18\x03 \x01(\x01\x12\x1a\n\x12\x62\x65st_meeting_share\x18\x04 \x01(\x01\x12\x0f\n\x07\x66illing\x18\x05 \x01(\x01\x12\x1c\n\x14\x63hanges_since_choice\x18\x06 \x01(\x04\x12\x13\n\x0b\x66ree_places\x18\x07 \x01(\x04\"8\n\x10\x45xhaustiveHealth\x12\x0f\n\x07\x65ntries\x18\x01 \x01(\x04\x12\x13\n\x0b\x66ree_places\x18\x02 \x01(\x04\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -32,19 +32,19 @@ _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'clearance.v1.health_pb2', _
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_GETSCENEHEALTHREQUEST']._serialized_start=43
-  _globals['_GETSCENEHEALTHREQUEST']._serialized_end=81
-  _globals['_GETSCENEHEALTHRESPONSE']._serialized_start=83
-  _globals['_GETSCENEHEALTHRESPONSE']._serialized_end=150
-  _globals['_SCENEHEALTH']._serialized_start=153
-  _globals['_SCENEHEALTH']._serialized_end=499
-  _globals['_SCENEMEMORY']._serialized_start=501
-  _globals['_SCENEMEMORY']._serialized_end=583
-  _globals['_KEPTREVISION']._serialized_start=585
-  _globals['_KEPTREVISION']._serialized_end=640
-  _globals['_TREEHEALTH']._serialized_start=642
-  _globals['_TREEHEALTH']._serialized_end=729
-  _globals['_SWEEPHEALTH']._serialized_start=732
-  _globals['_SWEEPHEALTH']._serialized_end=895
-  _globals['_EXHAUSTIVEHEALTH']._serialized_start=897
-  _globals['_EXHAUSTIVEHEALTH']._serialized_end=953
+  _globals['_GETSCENEHEALTHREQUEST']._serialized_end=106
+  _globals['_GETSCENEHEALTHRESPONSE']._serialized_start=108
+  _globals['_GETSCENEHEALTHRESPONSE']._serialized_end=175
+  _globals['_SCENEHEALTH']._serialized_start=178
+  _globals['_SCENEHEALTH']._serialized_end=524
+  _globals['_SCENEMEMORY']._serialized_start=526
+  _globals['_SCENEMEMORY']._serialized_end=608
+  _globals['_KEPTREVISION']._serialized_start=610
+  _globals['_KEPTREVISION']._serialized_end=665
+  _globals['_TREEHEALTH']._serialized_start=668
+  _globals['_TREEHEALTH']._serialized_end=915
+  _globals['_SWEEPHEALTH']._serialized_start=918
+  _globals['_SWEEPHEALTH']._serialized_end=1081
+  _globals['_EXHAUSTIVEHEALTH']._serialized_start=1083
+  _globals['_EXHAUSTIVEHEALTH']._serialized_end=1139
 # @@protoc_insertion_point(module_scope)

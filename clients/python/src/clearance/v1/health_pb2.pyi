@@ -7,10 +7,12 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 DESCRIPTOR: _descriptor.FileDescriptor
 
 class GetSceneHealthRequest(_message.Message):
-    __slots__ = ("scene",)
+    __slots__ = ("scene", "against_rebuilt")
     SCENE_FIELD_NUMBER: _ClassVar[int]
+    AGAINST_REBUILT_FIELD_NUMBER: _ClassVar[int]
     scene: str
-    def __init__(self, scene: _Optional[str] = ...) -> None: ...
+    against_rebuilt: bool
+    def __init__(self, scene: _Optional[str] = ..., against_rebuilt: bool = ...) -> None: ...
 
 class GetSceneHealthResponse(_message.Message):
     __slots__ = ("health",)
@@ -63,16 +65,30 @@ class KeptRevision(_message.Message):
     def __init__(self, revision: _Optional[int] = ..., written_bytes: _Optional[int] = ...) -> None: ...
 
 class TreeHealth(_message.Message):
-    __slots__ = ("entries", "depth", "least_depth", "surface_cost")
+    __slots__ = ("entries", "depth", "least_depth", "surface_cost", "rebuilt_surface_cost", "stale", "fill", "debt", "upkeep", "rounds", "bytes_per_entry")
     ENTRIES_FIELD_NUMBER: _ClassVar[int]
     DEPTH_FIELD_NUMBER: _ClassVar[int]
     LEAST_DEPTH_FIELD_NUMBER: _ClassVar[int]
     SURFACE_COST_FIELD_NUMBER: _ClassVar[int]
+    REBUILT_SURFACE_COST_FIELD_NUMBER: _ClassVar[int]
+    STALE_FIELD_NUMBER: _ClassVar[int]
+    FILL_FIELD_NUMBER: _ClassVar[int]
+    DEBT_FIELD_NUMBER: _ClassVar[int]
+    UPKEEP_FIELD_NUMBER: _ClassVar[int]
+    ROUNDS_FIELD_NUMBER: _ClassVar[int]
+    BYTES_PER_ENTRY_FIELD_NUMBER: _ClassVar[int]
     entries: int
     depth: int
     least_depth: int
     surface_cost: float
-    def __init__(self, entries: _Optional[int] = ..., depth: _Optional[int] = ..., least_depth: _Optional[int] = ..., surface_cost: _Optional[float] = ...) -> None: ...
+    rebuilt_surface_cost: float
+    stale: float
+    fill: float
+    debt: float
+    upkeep: int
+    rounds: int
+    bytes_per_entry: float
+    def __init__(self, entries: _Optional[int] = ..., depth: _Optional[int] = ..., least_depth: _Optional[int] = ..., surface_cost: _Optional[float] = ..., rebuilt_surface_cost: _Optional[float] = ..., stale: _Optional[float] = ..., fill: _Optional[float] = ..., debt: _Optional[float] = ..., upkeep: _Optional[int] = ..., rounds: _Optional[int] = ..., bytes_per_entry: _Optional[float] = ...) -> None: ...
 
 class SweepHealth(_message.Message):
     __slots__ = ("entries", "axis", "meeting_share", "best_meeting_share", "filling", "changes_since_choice", "free_places")

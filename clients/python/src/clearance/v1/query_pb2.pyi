@@ -50,6 +50,7 @@ class Indeterminacy(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     INDETERMINACY_ROUNDING: _ClassVar[Indeterminacy]
     INDETERMINACY_ITERATION_LIMIT: _ClassVar[Indeterminacy]
     INDETERMINACY_TIME_LIMIT: _ClassVar[Indeterminacy]
+    INDETERMINACY_RESOLUTION: _ClassVar[Indeterminacy]
 
 class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -88,6 +89,7 @@ INDETERMINACY_UNSPECIFIED: Indeterminacy
 INDETERMINACY_ROUNDING: Indeterminacy
 INDETERMINACY_ITERATION_LIMIT: Indeterminacy
 INDETERMINACY_TIME_LIMIT: Indeterminacy
+INDETERMINACY_RESOLUTION: Indeterminacy
 TERMINATION_UNSPECIFIED: Termination
 TERMINATION_CLOSED_FORM: Termination
 TERMINATION_CONVERGED: Termination

@@ -1,6 +1,7 @@
 from clearance.v1 import health_pb2 as _health_pb2
 from clearance.v1 import cast_pb2 as _cast_pb2
 from clearance.v1 import contact_pb2 as _contact_pb2
+from clearance.v1 import motion_pb2 as _motion_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2

@@ -6,6 +6,7 @@ import warnings
 from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
 from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
 from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
+from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import service_pb2 as clearance_dot_v1_dot_service__pb2
@@ -665,6 +666,21 @@ class QueriesStub(object):
                 request_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
                 _registered_method=True)
+        self.CheckMotions = channel.unary_unary(
+                '/clearance.v1.Queries/CheckMotions',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.FromString,
+                _registered_method=True)
+        self.CheckPath = channel.unary_unary(
+                '/clearance.v1.Queries/CheckPath',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.CheckPathRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.CheckPathResponse.FromString,
+                _registered_method=True)
+        self.Clearance = channel.unary_unary(
+                '/clearance.v1.Queries/Clearance',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
+                _registered_method=True)
 
 
 class QueriesServicer(object):
@@ -734,6 +750,27 @@ class QueriesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def CheckMotions(self, request, context):
+        """Is the robot free all along these motions?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def CheckPath(self, request, context):
+        """Is the robot free all along a path, and where is it blocked first?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def Clearance(self, request, context):
+        """Which pairs are within a distance?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_QueriesServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -781,6 +818,21 @@ def add_QueriesServicer_to_server(servicer, server):
                     servicer.WatchContacts,
                     request_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.SerializeToString,
+            ),
+            'CheckMotions': grpc.unary_unary_rpc_method_handler(
+                    servicer.CheckMotions,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.SerializeToString,
+            ),
+            'CheckPath': grpc.unary_unary_rpc_method_handler(
+                    servicer.CheckPath,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.CheckPathRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.CheckPathResponse.SerializeToString,
+            ),
+            'Clearance': grpc.unary_unary_rpc_method_handler(
+                    servicer.Clearance,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -1027,6 +1079,87 @@ class Queries(object):
             '/clearance.v1.Queries/WatchContacts',
             clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
             clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CheckMotions(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CheckMotions',
+            clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CheckPath(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CheckPath',
+            clearance_dot_v1_dot_motion__pb2.CheckPathRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.CheckPathResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def Clearance(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/Clearance',
+            clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
             options,
             channel_credentials,
             insecure,
