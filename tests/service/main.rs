@@ -5,3 +5,4 @@ mod conformance;
 mod connections;
 mod process;
 mod support;
+mod watching;
