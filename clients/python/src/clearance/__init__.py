@@ -8,7 +8,8 @@ Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are 
 """
 
 from .answers import Applied, Bracket, Cost, ItemAnswer, PairAnswer, Side, StatesAnswer, Verdict
-from .client import DEFAULT_ADDRESS, Client, Scene
+from .client import DEFAULT_ADDRESS, Client, Scene, changed_since
+from .contacts import ContactEvent, ContactKind, ContactState, ContactStep, ContactWatch
 from .edits import (
     add_body,
     add_robot,
@@ -61,6 +62,11 @@ __all__ = [
     "Client",
     "DEFAULT_ADDRESS",
     "Conflict",
+    "ContactEvent",
+    "ContactKind",
+    "ContactState",
+    "ContactStep",
+    "ContactWatch",
     "Cost",
     "DeadlineExceeded",
     "InvalidRequest",
@@ -83,6 +89,7 @@ __all__ = [
     "body",
     "box",
     "capsule",
+    "changed_since",
     "compound",
     "cone",
     "convex",

@@ -1,3 +1,4 @@
+from clearance.v1 import contact_pb2 as _contact_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2

@@ -3,6 +3,7 @@
 import grpc
 import warnings
 
+from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import service_pb2 as clearance_dot_v1_dot_service__pb2
@@ -588,6 +589,11 @@ class QueriesStub(object):
                 request_serializer=clearance_dot_v1_dot_query__pb2.DistanceRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.DistanceResponse.FromString,
                 _registered_method=True)
+        self.WatchContacts = channel.unary_stream(
+                '/clearance.v1.Queries/WatchContacts',
+                request_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
+                _registered_method=True)
 
 
 class QueriesServicer(object):
@@ -615,6 +621,13 @@ class QueriesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def WatchContacts(self, request, context):
+        """Which contacts begin, stay and end, for as long as the caller listens?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_QueriesServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -632,6 +645,11 @@ def add_QueriesServicer_to_server(servicer, server):
                     servicer.Distance,
                     request_deserializer=clearance_dot_v1_dot_query__pb2.DistanceRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.DistanceResponse.SerializeToString,
+            ),
+            'WatchContacts': grpc.unary_stream_rpc_method_handler(
+                    servicer.WatchContacts,
+                    request_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -716,6 +734,33 @@ class Queries(object):
             '/clearance.v1.Queries/Distance',
             clearance_dot_v1_dot_query__pb2.DistanceRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.DistanceResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def WatchContacts(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_stream(
+            request,
+            target,
+            '/clearance.v1.Queries/WatchContacts',
+            clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
+            clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
             options,
             channel_credentials,
             insecure,
