@@ -5,8 +5,10 @@
 //! daemon and its client on the same one); a figure is the median over the rounds, a
 //! ratio the median of the rounds' ratios, so that a machine that slows down slows both sides.
 
-#[path = "../tests/query/workload.rs"]
+#[path = "../../tests/query/workload.rs"]
 mod workload;
+
+mod crowd;
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
