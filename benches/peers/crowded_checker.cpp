@@ -111,7 +111,7 @@ struct Least : DistanceCallBackBase {
   double least = 0;
 
   Least() { request.enable_signed_distance = true; }
-  bool distance(CollisionObject* a, CollisionObject* b, Scalar& bound) override {
+  bool distance(CollisionObject* a, CollisionObject* b, CoalScalar& bound) override {
     result.clear();
     least = std::min<double>(least, coal::distance(a, b, request, result));
     bound = std::max(least, 1e-300);
@@ -239,7 +239,8 @@ int main(int count, char** arguments) {
     double least = INFINITY;
     for (auto& way : ways) {
       double seconds = std::min(pass(verdict, way).first, pass(verdict, way).first);
-      fprintf(stderr, "%s, %s: %.0f states/s\n", verdict ? "verdict" : "distance", way.name().c_str(), double(states) / seconds);
+      const char* question = verdict ? "verdict" : "distance";
+      fprintf(stderr, "%s, %s: %.0f states/s\n", question, way.name().c_str(), double(states) / seconds);
       if (seconds < least) least = seconds, best = way;
     }
     return best;
@@ -254,7 +255,8 @@ int main(int count, char** arguments) {
     auto [distance_seconds, wrong_distances] = pass(false, for_distances);
     printf("{\"verdict\": %.1f, \"distance\": %.1f, \"wrong_verdicts\": %zu, \"wrong_distances\": %zu, ",
            double(states) / verdict_seconds, double(states) / distance_seconds, wrong_verdicts, wrong_distances);
-    printf("\"verdict_way\": \"%s\", \"distance_way\": \"%s\"}\n", for_verdicts.name().c_str(), for_distances.name().c_str());
+    std::string verdict_way = for_verdicts.name(), distance_way = for_distances.name();
+    printf("\"verdict_way\": \"%s\", \"distance_way\": \"%s\"}\n", verdict_way.c_str(), distance_way.c_str());
   }
   return 0;
 }

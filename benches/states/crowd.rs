@@ -48,20 +48,11 @@ impl Random {
     }
 }
 
-pub fn scenes(
-    robot: &Arc<RobotModel>,
-    plain: &[Arc<Snapshot>],
-    states: &[(usize, Vec<f64>, Value)],
-) -> Vec<Crowded> {
+pub fn scenes(robot: &Arc<RobotModel>, plain: &[Arc<Snapshot>], states: &[(usize, Vec<f64>, Value)]) -> Vec<Crowded> {
     (0..plain.len()).step_by(EVERY).map(|scene| crowded(robot, &plain[scene], scene, states)).collect()
 }
 
-fn crowded(
-    robot: &Arc<RobotModel>,
-    plain: &Snapshot,
-    scene: usize,
-    states: &[(usize, Vec<f64>, Value)],
-) -> Crowded {
+fn crowded(robot: &Arc<RobotModel>, plain: &Snapshot, scene: usize, states: &[(usize, Vec<f64>, Value)]) -> Crowded {
     let own: Vec<_> = states.iter().filter(|(of, _, _)| *of == scene).collect();
     let arms: Vec<Vec<Placed>> = own.iter().map(|(_, positions, _)| arm(robot, positions)).collect();
     let mut random = Random(scene as u64 + 1);
@@ -91,7 +82,9 @@ fn crowded(
     let mut edits: Vec<Edit> = old.chain(new).map(Edit::AddBody).collect();
     edits.push(Edit::AddRobot { name: "ur5".to_owned(), model: Arc::clone(robot), base: Pose::identity() });
     let mut scene = Scene::new(Epoch(1));
-    scene.apply(&edits, None).expect("the crowd is in order");
+    for some in edits.chunks(EXTRA) {
+        scene.apply(some, None).expect("the crowd is in order");
+    }
     let collides = |truth: &Value| truth["in_collision"].as_bool().expect("the truth says so");
     let states = own.iter().map(|(_, positions, truth)| (positions.clone(), collides(truth))).collect();
     Crowded { snapshot: scene.snapshot(), states, distances }
