@@ -11,8 +11,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if env::var_os("CARGO_FEATURE_GRPC").is_none() {
         return Ok(());
     }
-    let files =
-        ["geometry", "scene", "robot", "query", "service"].map(|name| format!("proto/clearance/v1/{name}.proto"));
+    let mut files: Vec<PathBuf> =
+        fs::read_dir("proto/clearance/v1")?.map(|file| Ok(file?.path())).collect::<Result<_, std::io::Error>>()?;
+    files.sort();
     let descriptors = protox::compile(files, ["proto"])?;
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
     fs::write(out.join("clearance.descriptors"), prost::Message::encode_to_vec(&descriptors))?;

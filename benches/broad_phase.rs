@@ -48,7 +48,12 @@ fn moved(boxes: &[Aabb]) -> Vec<Aabb> {
 
 fn tree_of(boxes: &[Aabb]) -> (DynamicTree, Vec<ProxyId>) {
     let mut tree = DynamicTree::new();
-    let proxies = (0..).zip(boxes).map(|(i, aabb)| tree.insert(*aabb, i)).collect();
+    let mut insert = |(i, aabb): (u64, &Aabb)| {
+        let name = tree.insert(*aabb, i);
+        tree.settle();
+        name
+    };
+    let proxies = (0..).zip(boxes).map(&mut insert).collect();
     (tree, proxies)
 }
 
@@ -82,6 +87,9 @@ fn build(c: &mut Criterion) {
     let mut group = group(c, "build");
     for count in SIZES {
         let boxes = boxes(count, 1);
+        group.bench_function(BenchmarkId::new("at_once", count), |b| {
+            b.iter(|| DynamicTree::build(boxes.iter().copied().zip(0..)));
+        });
         group.bench_function(BenchmarkId::new("one_by_one", count), |b| b.iter(|| tree_of(&boxes)));
         group.bench_function(BenchmarkId::new("parry_at_once", count), |b| b.iter(|| parry_of(&boxes)));
         group.bench_function(BenchmarkId::new("parry_one_by_one", count), |b| {
@@ -177,6 +185,7 @@ fn move_all(c: &mut Criterion) {
             for (proxy, aabb) in proxies.iter().zip(&after) {
                 tree.move_to(*proxy, *aabb);
             }
+            tree.settle();
             tree
         };
         group.bench_function(BenchmarkId::new("tree", count), |b| {
@@ -208,6 +217,7 @@ fn move_all(c: &mut Criterion) {
                 turn = (turn + 7919) % count;
                 let mut next = tree.clone();
                 next.move_to(proxies[turn], after[turn]);
+                next.settle();
                 next
             });
         });

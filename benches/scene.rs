@@ -76,7 +76,7 @@ fn edits(c: &mut Criterion) {
                 let bodies: Vec<Body> = snapshot.bodies().map(|body| Body::clone(body)).collect();
                 let names: HashMap<Arc<str>, BodyId> =
                     bodies.iter().map(|body| (Arc::clone(&body.name), body.id)).collect();
-                let boxes: Vec<_> = snapshot.tree().iter().collect();
+                let boxes: Vec<_> = snapshot.broad_phase().iter().collect();
                 (bodies, names, boxes)
             });
         });

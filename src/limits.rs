@@ -17,6 +17,8 @@ pub struct Limits {
     pub max_joint_values: usize,
     /// Pairs listed for one item of an answer.
     pub max_pairs: usize,
+    /// States that one motion may be looked at in.
+    pub max_motion_states: usize,
     /// Scenes of the daemon.
     pub max_scenes: usize,
     /// Bodies of one scene.
@@ -31,6 +33,10 @@ pub struct Limits {
     pub max_edits: usize,
     /// Revisions of a scene that can still be asked.
     pub snapshots_kept: usize,
+    /// What the kept revisions of a scene may hold beside the oldest of them, bytes.
+    pub max_kept_bytes: usize,
+    /// Bodies listed by one `GetScene`.
+    pub max_bodies_listed: usize,
     /// Idempotency keys remembered for one scene.
     pub idempotency_keys_kept: usize,
     /// Points of one convex hull before inner ones are left out.
@@ -39,6 +45,10 @@ pub struct Limits {
     pub max_mesh_triangles: usize,
     /// Parts of one compound.
     pub max_compound_parts: usize,
+    /// Samples of one height field.
+    pub max_height_samples: usize,
+    /// Points of one point cloud.
+    pub max_cloud_points: usize,
     /// Groups of one body.
     pub max_groups: usize,
     /// Size of one uploaded file, bytes.
@@ -53,6 +63,10 @@ pub struct Limits {
     pub max_queries_in_flight: usize,
     /// Changes of one scene waiting for their turn.
     pub max_queued_writes: usize,
+    /// Callers that watch contacts, over all scenes.
+    pub max_watchers: usize,
+    /// Pairs in contact or undecided that one watcher may have.
+    pub max_contacts: usize,
     /// Uploads and robot loadings under way.
     pub max_uploads_in_flight: usize,
     /// Longest time a question may take, seconds.
@@ -66,17 +80,22 @@ impl Default for Limits {
             max_items: 100_000,
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
+            max_motion_states: 100_000,
             max_scenes: 1_000,
-            max_bodies: 100_000,
+            max_bodies: 2_000_000,
             max_robots_in_scene: 64,
             max_pair_entries: 100_000,
             max_robot_models: 256,
-            max_edits: 10_000,
+            max_edits: 100_000,
             snapshots_kept: 64,
+            max_kept_bytes: 2 << 30,
+            max_bodies_listed: 100_000,
             idempotency_keys_kept: 1_024,
             max_hull_points: 100_000,
             max_mesh_triangles: 2_000_000,
             max_compound_parts: 10_000,
+            max_height_samples: 20_000_000,
+            max_cloud_points: 5_000_000,
             max_groups: 64,
             max_asset_bytes: 256 << 20,
             max_total_asset_bytes: 2 << 30,
@@ -84,6 +103,8 @@ impl Default for Limits {
             max_name_bytes: 256,
             max_queries_in_flight: 64,
             max_queued_writes: 64,
+            max_watchers: 32,
+            max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
         }
@@ -104,6 +125,7 @@ pub struct Limit {
 }
 
 const EXHAUSTED: &str = "RESOURCE_EXHAUSTED naming limit, asked and allowed";
+const EXHAUSTED_AT_THE_END: &str = "the stream ends with RESOURCE_EXHAUSTED naming limit, asked and allowed";
 
 impl Limits {
     /// Every cap, in the order of the fields.
@@ -115,6 +137,7 @@ impl Limits {
             max_items,
             max_joint_values,
             max_pairs,
+            max_motion_states,
             max_scenes,
             max_bodies,
             max_robots_in_scene,
@@ -122,10 +145,14 @@ impl Limits {
             max_robot_models,
             max_edits,
             snapshots_kept,
+            max_kept_bytes,
+            max_bodies_listed,
             idempotency_keys_kept,
             max_hull_points,
             max_mesh_triangles,
             max_compound_parts,
+            max_height_samples,
+            max_cloud_points,
             max_groups,
             max_asset_bytes,
             max_total_asset_bytes,
@@ -133,6 +160,8 @@ impl Limits {
             max_name_bytes,
             max_queries_in_flight,
             max_queued_writes,
+            max_watchers,
+            max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
         } = *self;
@@ -142,6 +171,7 @@ impl Limits {
             row("max_items", max_items, "items per question", EXHAUSTED),
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
+            row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
             row("max_scenes", max_scenes, "scenes", EXHAUSTED),
             row("max_bodies", max_bodies, "bodies per scene", EXHAUSTED),
             row("max_robots_in_scene", max_robots_in_scene, "robots per scene", EXHAUSTED),
@@ -149,6 +179,13 @@ impl Limits {
             row("max_robot_models", max_robot_models, "robot models", EXHAUSTED),
             row("max_edits", max_edits, "edits per Apply", EXHAUSTED),
             row("snapshots_kept", snapshots_kept, "revisions per scene", "OUT_OF_RANGE naming the oldest kept"),
+            row(
+                "max_kept_bytes",
+                max_kept_bytes,
+                "bytes per scene, beside its oldest kept revision",
+                "the oldest revisions are let go early: OUT_OF_RANGE naming the oldest kept",
+            ),
+            row("max_bodies_listed", max_bodies_listed, "bodies per GetScene", EXHAUSTED),
             row(
                 "idempotency_keys_kept",
                 idempotency_keys_kept,
@@ -158,6 +195,8 @@ impl Limits {
             row("max_hull_points", max_hull_points, "points per hull", EXHAUSTED),
             row("max_mesh_triangles", max_mesh_triangles, "triangles per mesh", EXHAUSTED),
             row("max_compound_parts", max_compound_parts, "parts per compound", EXHAUSTED),
+            row("max_height_samples", max_height_samples, "samples per height field", EXHAUSTED),
+            row("max_cloud_points", max_cloud_points, "points per point cloud", EXHAUSTED),
             row("max_groups", max_groups, "groups per body", EXHAUSTED),
             row("max_asset_bytes", max_asset_bytes, "bytes per uploaded file", EXHAUSTED),
             row("max_total_asset_bytes", max_total_asset_bytes, "bytes of all uploaded files", EXHAUSTED),
@@ -165,6 +204,8 @@ impl Limits {
             row("max_name_bytes", max_name_bytes, "bytes per name", EXHAUSTED),
             row("max_queries_in_flight", max_queries_in_flight, "questions at a time", EXHAUSTED),
             row("max_queued_writes", max_queued_writes, "waiting changes per scene", EXHAUSTED),
+            row("max_watchers", max_watchers, "watchers at a time", EXHAUSTED),
+            row("max_contacts", max_contacts, "contacts per watcher", EXHAUSTED_AT_THE_END),
             row("max_uploads_in_flight", max_uploads_in_flight, "uploads at a time", EXHAUSTED),
             row(
                 "max_deadline_seconds",

@@ -1,60 +1,115 @@
 //! How good is the tree just now? Figures that rise when it rots.
 
-use super::tree::{DynamicTree, NONE, visit_cost};
-use crate::geometry::Aabb;
+use super::node::{Inner, Kid, Leaf};
+use super::tree::{Change, DynamicTree};
+use super::volume::{BoundingVolume, LANES};
+
+/// A leaf that has become this many times as dear as when its entries were chosen counts as stale.
+const STALE: f32 = 1.15;
 
 /// Figures of a tree's quality. Reading them looks at every node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Health {
     /// Entries.
+    pub entries: usize,
+    /// Nodes: leaves, and inner nodes above them.
     pub leaves: usize,
-    /// Longest way from the root to a leaf, in steps; zero for an empty tree or one entry.
-    pub height: u32,
-    /// The least height a binary tree of so many leaves can have.
-    pub least_height: u32,
-    /// Inner nodes that a traversal by a point placed at random in the root's box visits on average by the
-    /// surface-area heuristic: the sum of the inner nodes' surfaces over the root's. Rises when the tree gets worse.
+    /// Inner nodes.
+    pub inner_nodes: usize,
+    /// Nodes on the longest way from the root to an entry; zero for an empty tree.
+    pub depth: u32,
+    /// The least depth that a tree of so many entries can have, eight to a node.
+    pub least_depth: u32,
+    /// Nodes that a traversal by a point placed at random in the root's bound visits on average by the surface-area
+    /// heuristic: the sum of all nodes' costs over the root's. Rises when the tree gets worse;
+    /// [`DynamicTree::rebuilt`] has the figure to hold it against.
     pub surface_cost: f64,
-    /// Sum of the side lengths of the fat boxes of all leaves over that of the tight ones; 1 when no leaf has any
-    /// extent. Twice the fattening is the price of cheap moves, what is beyond it comes from boxes that shrank.
-    pub inflation: f64,
-    /// Places kept for entries that are gone: they are used again before the tree takes more memory.
-    pub free_places: usize,
+    /// Share of leaves that have grown, by moves of their entries, to at least 1.15 times the cost they had when the
+    /// entries were chosen.
+    pub stale: f64,
+    /// Share of the places in leaves that are taken.
+    pub fill: f64,
+    /// Things to be grouped anew by upkeep that is owed; negative if some was done in advance.
+    pub debt: f64,
+    /// Things that upkeep has grouped anew since the tree was made.
+    pub upkeep: u64,
+    /// How often upkeep has been through the whole tree.
+    pub rounds: u64,
+    /// Bytes an entry, those shared with other versions included.
+    pub bytes_per_entry: f64,
 }
 
-impl DynamicTree {
+impl<V: BoundingVolume> DynamicTree<V> {
     /// Looks at the whole tree and says how good it is.
     #[must_use]
     pub fn health(&self) -> Health {
-        let (mut fat_sides, mut tight_sides, mut inner) = (0.0, 0.0, 0.0);
-        for leaf in self.live_leaves() {
-            fat_sides += sides(&self.nodes[leaf.node].fat);
-            tight_sides += sides(&leaf.tight);
+        let tree = self.settled();
+        let (mut leaves, mut stale, mut entries, mut cost) = (0_usize, 0_usize, 0_usize, 0.0_f64);
+        for leaf in tree.leaves() {
+            let own = V::cost(&leaf.bound());
+            leaves += 1;
+            entries += leaf.entries.len();
+            stale += usize::from(own > STALE * leaf.arranged);
+            cost += f64::from(own);
         }
-        let mut stack = Vec::new();
-        stack.extend((self.root != NONE).then_some(self.root));
-        while let Some(index) = stack.pop() {
-            let node = &self.nodes[index];
-            if !node.is_leaf() {
-                inner += visit_cost(&node.fat);
-                stack.extend([node.left, node.right]);
+        let mut inner_nodes = 0;
+        for inner in tree.inner_nodes() {
+            inner_nodes += 1;
+            cost += f64::from(V::cost(&inner.bound()));
+        }
+        let whole = tree.root.as_ref().map_or(0.0, |root| f64::from(V::cost(&root.bound())));
+        let share = |part: usize, of: usize| if of > 0 { part as f64 / of as f64 } else { 0.0 };
+        Health {
+            entries,
+            leaves,
+            inner_nodes,
+            depth: tree.depth(),
+            least_depth: if entries == 0 { 0 } else { least_depth(entries) },
+            surface_cost: if whole > 0.0 { cost / whole } else { 0.0 },
+            stale: share(stale, leaves),
+            fill: share(entries, leaves * LANES),
+            debt: tree.upkeep.debt,
+            upkeep: tree.upkeep.work,
+            rounds: tree.upkeep.rounds,
+            bytes_per_entry: share(tree.memory(), entries),
+        }
+    }
+
+    /// The same entries in a tree that is built at once: what [`DynamicTree::health`] is to be held against. Its names
+    /// are others.
+    #[must_use]
+    pub fn rebuilt(&self) -> Self {
+        Self::build(self.iter().map(|(payload, volume)| (volume, payload))).0
+    }
+
+    /// Bytes of all nodes and lists, those shared with other versions included.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let counts = 2 * size_of::<usize>();
+        let leaves = self.leaves().count() * (size_of::<Leaf<V>>() + counts);
+        let inner = self.inner_nodes().count() * (size_of::<Inner<V>>() + counts);
+        let waiting = self.waiting.capacity() * size_of::<Change<V>>();
+        leaves + inner + waiting + self.places.memory() + size_of::<Self>()
+    }
+
+    fn depth(&self) -> u32 {
+        let mut deepest = 0;
+        let mut stack: Vec<_> = self.root.iter().map(|root| (root, 1)).collect();
+        while let Some((kid, depth)) = stack.pop() {
+            deepest = deepest.max(depth);
+            if let Kid::Inner(inner) = kid {
+                stack.extend(inner.kids.iter().map(|kid| (kid, depth + 1)));
             }
         }
-        let (height, whole) = match self.root {
-            NONE => (0, 0.0),
-            root => (self.nodes[root].height, visit_cost(&self.nodes[root].fat)),
-        };
-        Health {
-            leaves: self.count,
-            height,
-            least_height: self.count.max(1).next_power_of_two().ilog2(),
-            surface_cost: if whole > 0.0 { inner / whole } else { 0.0 },
-            inflation: if tight_sides > 0.0 { fat_sides / tight_sides } else { 1.0 },
-            free_places: self.leaves.len() - self.count,
-        }
+        deepest
     }
 }
 
-fn sides(aabb: &Aabb) -> f64 {
-    (aabb.max - aabb.min).sum()
+fn least_depth(entries: usize) -> u32 {
+    let (mut depth, mut room) = (1, LANES);
+    while room < entries {
+        depth += 1;
+        room = room.saturating_mul(LANES);
+    }
+    depth
 }

@@ -1,268 +1,202 @@
-//! How the tree changes: entries come, go and move, and the tree stays good while they do.
+//! How an entry comes in: down to the leaf that it makes least dearer, and nodes that overflow are divided.
 //!
-//! A new leaf goes where it makes the tree least dear to traverse (surface-area heuristic, one descent bounded from
-//! below: Bittner, Hapala, Havran, "Incremental BVH construction for ray tracing", 2015). On the way back up every node
-//! tries to swap a child with a grandchild (Kopta et al., "Fast, effective BVH updates for animated scenes", 2012).
-//! Where costs tie, the less tall side wins: boxes that all coincide still make a balanced tree.
+//! A full leaf's nine entries are divided in two by the best split there is; a full node does the same with its nine
+//! children. So the tree grows at its root, like a B-tree (Bayer, McCreight, 1972), and no order of insertions makes a
+//! chain of it. Levels may have gaps, which a division uses before it asks the parent for room.
 
-use super::tree::{DynamicTree, Leaf, NONE, Node, ProxyId, fattened, visit_cost};
-use crate::geometry::Aabb;
+use std::sync::Arc;
 
-/// A leaf that has become much smaller than its fat box is put in anew: when the fat box reaches beyond the new one
-/// grown by this many times its own fattening.
-const LOOSE_FATTENINGS: f64 = 4.0;
+use arrayvec::ArrayVec;
 
-/// A moved leaf stays where it is as long as its parent's cost grows by no more than this factor. Larger makes moves
-/// cheaper and lets the tree get worse in between; at 1 nearly every move would be a removal and an insertion.
-const LARGEST_STRETCH: f64 = 1.25;
+use super::arrange::{Item, halve};
+use super::node::{Entry, Inner, Kid, Leaf, lanes_of};
+use super::places::Places;
+use super::tree::DynamicTree;
+use super::volume::{BoundingVolume, LANES};
 
-/// After so many changes of its box in one place a leaf gets a new place all the same: steps that are small one by one
-/// add up. More makes moves cheaper and the tree worse.
-const MOST_STRETCHES: u32 = 7;
+/// The fewest entries or children on one side of a division.
+const LEAST_SIDE: usize = 3;
 
-/// How far the heights of two siblings may differ. A leaf is never put beside a taller node, and siblings that come
-/// farther apart are brought closer even where that costs surface: boxes nested in each other, or spaced ever wider,
-/// would otherwise make the tree a chain. At 16 the height stays below some 5 times the least possible one in the worst
-/// case, and trees of scattered boxes never feel it; smaller pushes large boxes (floors, walls) too far down.
-const LARGEST_IMBALANCE: u32 = 16;
-
-impl DynamicTree {
-    /// Adds an entry: a box, metres, and the caller's number for it.
-    pub fn insert(&mut self, tight: Aabb, payload: u64) -> ProxyId {
-        debug_assert!(is_proper(&tight), "the tree was given {tight:?}");
-        let leaf = self.allocate_leaf(Leaf { tight, payload, node: NONE, stretches: 0 });
-        self.attach(leaf);
-        self.count += 1;
-        ProxyId(leaf)
-    }
-
-    /// Removes an entry. Its name may be given to another one afterwards.
-    pub fn remove(&mut self, proxy: ProxyId) {
-        let node = self.leaves[proxy.0].node;
-        self.detach(node);
-        self.free_leaf(proxy.0);
-        self.count -= 1;
-    }
-
-    /// Gives an entry another box, metres. Says whether the tree had to change for it: not as long as the box stays in
-    /// the fattened one. Small moves beyond that change boxes on the way to the root, large ones the entry's place.
-    pub fn move_to(&mut self, proxy: ProxyId, tight: Aabb) -> bool {
-        debug_assert!(is_proper(&tight), "the tree was given {tight:?}");
-        self.leaves[proxy.0].tight = tight;
-        let node = self.leaves[proxy.0].node;
-        let fat = &self.nodes[node].fat;
-        let wanted = fattened(&tight);
-        let loosest = wanted.grown(LOOSE_FATTENINGS * (tight.min.x - wanted.min.x));
-        if fat.contains(&tight) && loosest.contains(fat) {
-            return false;
-        }
-        if !self.stretch(proxy.0, &wanted) {
-            self.detach(node);
-            self.attach(proxy.0);
-        }
-        true
-    }
-
-    /// Gives a leaf another fat box in the place it has, if its parent hardly grows by that: for bodies that move a
-    /// little at a time, rotations on the way up keep the tree good for a while.
-    fn stretch(&mut self, leaf: u32, fat: &Aabb) -> bool {
-        let Leaf { node, stretches, .. } = self.leaves[leaf];
-        if stretches >= MOST_STRETCHES {
-            return false;
-        }
-        let parent = self.nodes[node].parent;
-        if parent != NONE {
-            let Node { fat: before, left, right, .. } = &self.nodes[parent];
-            let sibling = if *left == node { *right } else { *left };
-            let after = self.nodes[sibling].fat.union(fat);
-            if visit_cost(&after) > LARGEST_STRETCH * visit_cost(before) {
-                return false;
-            }
-        }
-        self.leaves[leaf].stretches += 1;
-        self.nodes[node].fat = *fat;
-        self.refit_from(parent);
-        true
-    }
-
-    /// Makes a node for the leaf and puts it where it costs least.
-    fn attach(&mut self, leaf: u32) {
-        let fat = fattened(&self.leaves[leaf].tight);
-        let node = self.allocate_node(Node { fat, parent: NONE, left: NONE, right: leaf, height: 0 });
-        self.leaves[leaf].node = node;
-        self.leaves[leaf].stretches = 0;
-        if self.root == NONE {
-            self.root = node;
+impl<V: BoundingVolume> DynamicTree<V> {
+    /// Puts an entry into the tree.
+    pub(super) fn place(&mut self, entry: &Entry<V>) {
+        let places = &mut self.places;
+        let Some(root) = &mut self.root else {
+            let id = places.new_node();
+            places.set_leaf(entry.slot, id);
+            places.set_root(id);
+            self.root = Some(Kid::Leaf(Arc::new(Leaf::of(id, std::slice::from_ref(entry)))));
             return;
-        }
-        let sibling = self.best_sibling(&fat);
-        let above = self.nodes[sibling].parent;
-        let union = self.nodes[sibling].fat.union(&fat);
-        let height = self.nodes[sibling].height + 1;
-        let parent = self.allocate_node(Node { fat: union, parent: above, left: sibling, right: node, height });
-        self.nodes[sibling].parent = parent;
-        self.nodes[node].parent = parent;
-        self.replace_child(above, sibling, parent);
-        self.rotate(parent);
-        self.refit_from(above);
-    }
-
-    /// Takes a leaf's node out and frees it; the leaf itself is left to the caller.
-    fn detach(&mut self, node: u32) {
-        let parent = self.nodes[node].parent;
-        self.free_node(node);
-        if parent == NONE {
-            self.root = NONE;
-            return;
-        }
-        let Node { left, right, parent: above, .. } = self.nodes[parent];
-        let sibling = if left == node { right } else { left };
-        self.free_node(parent);
-        self.nodes[sibling].parent = above;
-        self.replace_child(above, parent, sibling);
-        self.refit_from(above);
-    }
-
-    /// The node beside which a leaf of that box adds least to the cost of all nodes.
-    fn best_sibling(&self, fat: &Aabb) -> u32 {
-        let own = visit_cost(fat);
-        let mut node = self.root;
-        let mut best = node;
-        let mut least = match self.nodes[node].height {
-            0..=LARGEST_IMBALANCE => visit_cost(&self.nodes[node].fat.union(fat)),
-            _ => f64::INFINITY,
         };
-        // What the nodes from the root down to `node` grow by if the leaf goes below them.
-        let mut grown = 0.0;
-        while !self.nodes[node].is_leaf() {
-            let Node { fat: bounds, left, right, .. } = &self.nodes[node];
-            grown += visit_cost(&bounds.union(fat)) - visit_cost(bounds);
-            let [mut near, mut far] = [*left, *right].map(|child| self.candidate(child, fat, own, grown));
-            if (far.bound, far.height) < (near.bound, near.height) {
-                (near, far) = (far, near);
-            }
-            if far.cost < least {
-                (best, least) = (far.node, far.cost);
-            }
-            if near.cost <= least {
-                (best, least) = (near.node, near.cost);
-            }
-            if near.bound > least {
-                break;
-            }
-            node = near.node;
+        let bound = entry.volume.bound();
+        let way = Search::for_leaf(root, &bound);
+        let Some(sibling) = place_in(root, entry, &bound, way, places) else { return };
+        let mut above = Inner::empty(places.new_node(), root.level().max(sibling.level()) + 1);
+        places.set_root(above.id);
+        let Some(old) = self.root.take() else { return };
+        for kid in [old, sibling] {
+            adopt(&mut above, kid, places);
         }
-        best
+        above.arranged = above.spread();
+        self.root = Some(Kid::Inner(Arc::new(above)));
     }
+}
 
-    fn candidate(&self, node: u32, fat: &Aabb, own: f64, grown: f64) -> Candidate {
-        let Node { fat: bounds, height, .. } = &self.nodes[node];
-        let cost = grown + visit_cost(&bounds.union(fat));
-        // Anywhere below, this node grows as well, and the new parent is at least as large as the leaf.
-        let bound = if *height == 0 { cost } else { cost - visit_cost(bounds) + own };
-        let cost = if *height > LARGEST_IMBALANCE { f64::INFINITY } else { cost };
-        Candidate { node, cost, bound, height: *height }
-    }
+/// Adds a child to a node that has room.
+pub(super) fn adopt<V: BoundingVolume>(inner: &mut Inner<V>, kid: Kid<V>, places: &mut Places) {
+    places.set_parent(kid.id(), inner.id, inner.kids.len());
+    let bound = kid.bound();
+    inner.push(kid, &bound);
+}
 
-    /// Makes `parent` (or the root's place) point to `new` where it pointed to `old`.
-    fn replace_child(&mut self, parent: u32, old: u32, new: u32) {
-        if parent == NONE {
-            self.root = new;
-            return;
-        }
-        let node = &mut self.nodes[parent];
-        if node.left == old {
-            node.left = new;
-        } else {
-            node.right = new;
-        }
-    }
-
-    /// Puts boxes and heights right from `node` up to the root, and rotates on the way. Stops as soon as nothing has
-    /// changed, so that untouched pages stay shared with other versions.
-    fn refit_from(&mut self, mut node: u32) {
-        while node != NONE {
-            let (fat, height) = self.united(self.nodes[node].left, self.nodes[node].right);
-            let before = &self.nodes[node];
-            let changed = before.fat != fat || before.height != height;
-            if changed {
-                self.nodes[node].fat = fat;
-                self.nodes[node].height = height;
+/// Puts an entry into the leaf at the end of `way`, the next lane in its lowest three bits; gives back what had no room
+/// any more, for the parent to take.
+fn place_in<V: BoundingVolume>(
+    kid: &mut Kid<V>,
+    entry: &Entry<V>,
+    bound: &V::Bound,
+    way: u64,
+    places: &mut Places,
+) -> Option<Kid<V>> {
+    match kid {
+        Kid::Leaf(leaf) => {
+            let leaf = Arc::make_mut(leaf);
+            if leaf.entries.len() < LANES {
+                places.set_leaf(entry.slot, leaf.id);
+                leaf.push(entry);
+                leaf.arranged = leaf.arranged.max(V::cost(&leaf.bound()));
+                return None;
             }
-            if !self.rotate(node) && !changed {
-                break;
-            }
-            node = self.nodes[node].parent;
+            Some(divide_leaf(leaf, entry, places))
         }
-    }
-
-    /// Box and height of a node with these children.
-    fn united(&self, left: u32, right: u32) -> (Aabb, u32) {
-        let (left, right) = (&self.nodes[left], &self.nodes[right]);
-        (left.fat.union(&right.fat), 1 + left.height.max(right.height))
-    }
-
-    /// Swaps a child of `node` with a child of the other one if that makes the latter cheaper, or the tree less tall
-    /// at the same cost, or less out of balance at any cost. Says whether it did. The box of `node` stays what it was.
-    fn rotate(&mut self, node: u32) -> bool {
-        let Node { left, right, height, .. } = self.nodes[node];
-        let mut best = None;
-        let mut best_change = (imbalance(self.nodes[left].height, self.nodes[right].height), 0.0, height);
-        for (lone, split) in [(left, right), (right, left)] {
-            if self.nodes[split].is_leaf() {
-                continue;
-            }
-            let Node { fat, left: first, right: second, .. } = &self.nodes[split];
-            let cost = visit_cost(fat);
-            for (goes_up, stays) in [(*first, *second), (*second, *first)] {
-                let (united, inner_height) = self.united(lone, stays);
-                let [lone_height, up_height, stay_height] = [lone, goes_up, stays].map(|i| self.nodes[i].height);
-                let change = (
-                    imbalance(lone_height, stay_height).max(imbalance(up_height, inner_height)),
-                    visit_cost(&united) - cost,
-                    1 + inner_height.max(up_height),
-                );
-                if change < best_change {
-                    best_change = change;
-                    best = Some(Rotation { lone, split, goes_up });
+        Kid::Inner(inner) => {
+            let inner = Arc::make_mut(inner);
+            let lane = (way & 7) as usize;
+            let before = V::get(&inner.lanes, lane);
+            let sibling = place_in(&mut inner.kids[lane], entry, bound, way >> 3, places);
+            let Some(sibling) = sibling else {
+                let after = V::union(&before, bound);
+                if after != before {
+                    V::put(&mut inner.lanes, lane, &after);
+                    inner.arranged += V::cost(&after) - V::cost(&before);
                 }
+                return None;
+            };
+            let after = inner.kids[lane].bound();
+            V::put(&mut inner.lanes, lane, &after);
+            if inner.kids.len() < LANES {
+                adopt(inner, sibling, places);
+                inner.arranged = inner.spread();
+                return None;
             }
+            let level = inner.kids[lane].level().max(sibling.level()) + 1;
+            if level < inner.level {
+                // There is room between this node and the child: the two halves get a node of their own.
+                let mut between = Inner::empty(places.new_node(), level);
+                places.set_parent(between.id, inner.id, lane);
+                let both = Kid::Inner(Arc::new(Inner::empty(between.id, level)));
+                let first = std::mem::replace(&mut inner.kids[lane], both);
+                adopt(&mut between, first, places);
+                adopt(&mut between, sibling, places);
+                between.arranged = between.spread();
+                let bound = between.bound();
+                inner.kids[lane] = Kid::Inner(Arc::new(between));
+                V::put(&mut inner.lanes, lane, &bound);
+                inner.arranged = inner.spread();
+                return None;
+            }
+            Some(divide_inner(inner, sibling, places))
         }
-        let Some(Rotation { lone, split, goes_up }) = best else { return false };
-        self.replace_child(node, lone, goes_up);
-        self.replace_child(split, goes_up, lone);
-        self.nodes[lone].parent = split;
-        self.nodes[goes_up].parent = node;
-        let (fat, inner_height) = self.united(self.nodes[split].left, self.nodes[split].right);
-        self.nodes[split].fat = fat;
-        self.nodes[split].height = inner_height;
-        self.nodes[node].height = best_change.2;
-        true
     }
 }
 
-/// A node that might become the sibling of a new leaf.
-struct Candidate {
-    node: u32,
-    /// What the tree's cost grows by if it does.
-    cost: f64,
-    /// Nothing at or below the node costs less.
-    bound: f64,
-    height: u32,
+/// The search for the leaf that makes the tree least dearer: by what all nodes on the way grow, and a share of what the
+/// leaf then costs, since its entries are looked at whenever it is. Depth first, what grows least first, and no farther
+/// where the rest cannot be better than what was found (branch and bound, as Bittner, Hapala, Havran, "Incremental BVH
+/// construction for ray tracing", 2015).
+struct Search<'a, V: BoundingVolume> {
+    bound: &'a V::Bound,
+    /// What any leaf costs at least with the entry in it, as far as it counts.
+    least: f32,
+    best: f32,
+    way: u64,
+    /// Nodes that may still be looked at.
+    left: u32,
 }
 
-/// `lone` goes below `split` in the place of `goes_up`, which takes `lone`'s.
-struct Rotation {
-    lone: u32,
-    split: u32,
-    goes_up: u32,
+/// What one more entry adds to the price of a leaf, as a share of its cost. It keeps small boxes out of the leaf of a
+/// floor, which would grow by nothing.
+const ENTRY_SHARE: f32 = 1.0 / 8.0;
+
+/// Nodes a search looks at, beyond the way down. Where all boxes overlap, nothing tells the ways apart.
+const MOST_LOOKED_AT: u32 = 48;
+
+impl<V: BoundingVolume> Search<'_, V> {
+    fn for_leaf(root: &Kid<V>, bound: &V::Bound) -> u64 {
+        let least = ENTRY_SHARE * V::cost(bound);
+        let mut search = Search::<V> { bound, least, best: f32::INFINITY, way: 0, left: MOST_LOOKED_AT };
+        search.look(root, 0.0, 0, 0);
+        search.way
+    }
+
+    fn look(&mut self, kid: &Kid<V>, grown: f32, way: u64, shift: u32) {
+        let Kid::Inner(inner) = kid else { return };
+        self.left = self.left.saturating_sub(1);
+        let growth = V::growth(&inner.lanes, inner.kids.len(), self.bound);
+        let mut untried = ((1_u32 << inner.kids.len()) - 1) as u8;
+        while untried != 0 {
+            let cheaper = |a: usize, b: usize| if growth.by[b] < growth.by[a] { b } else { a };
+            let Some(lane) = lanes_of(untried).reduce(cheaper) else { return };
+            untried &= !(1 << lane);
+            let price = grown + growth.by[lane];
+            if self.best <= price + self.least || (self.left == 0 && self.best < f32::INFINITY) {
+                return;
+            }
+            let way = way | (lane as u64) << shift;
+            match &inner.kids[lane] {
+                Kid::Leaf(_) => {
+                    let price = price + ENTRY_SHARE * growth.after[lane];
+                    if price < self.best || self.best == f32::INFINITY {
+                        (self.best, self.way) = (price.min(f32::MAX), way);
+                    }
+                }
+                below @ Kid::Inner(_) => self.look(below, price, way, shift + 3),
+            }
+        }
+    }
 }
 
-/// By how much two children's heights are farther apart than they may be.
-fn imbalance(a: u32, b: u32) -> u32 {
-    a.abs_diff(b).saturating_sub(LARGEST_IMBALANCE)
+fn divide_leaf<V: BoundingVolume>(leaf: &mut Leaf<V>, entry: &Entry<V>, places: &mut Places) -> Kid<V> {
+    let nine: ArrayVec<Entry<V>, { LANES + 1 }> = leaf.all().chain([*entry]).collect();
+    let mut items: ArrayVec<Item<V>, { LANES + 1 }> =
+        (0..).zip(&nine).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
+    let left = halve(&mut items, LEAST_SIDE);
+    let side = |items: &[Item<V>]| -> ArrayVec<Entry<V>, LANES> {
+        items.iter().map(|item| nine[item.index as usize]).collect()
+    };
+    let (stays, goes) = (side(&items[..left]), side(&items[left..]));
+    let id = places.new_node();
+    stays.iter().for_each(|entry| places.set_leaf(entry.slot, leaf.id));
+    goes.iter().for_each(|entry| places.set_leaf(entry.slot, id));
+    *leaf = Leaf::of(leaf.id, &stays);
+    Kid::Leaf(Arc::new(Leaf::of(id, &goes)))
 }
 
-fn is_proper(aabb: &Aabb) -> bool {
-    aabb.min.iter().zip(aabb.max.iter()).all(|(min, max)| min <= max && min.is_finite() && max.is_finite())
+fn divide_inner<V: BoundingVolume>(inner: &mut Inner<V>, sibling: Kid<V>, places: &mut Places) -> Kid<V> {
+    let mut nine: ArrayVec<Option<Kid<V>>, { LANES + 1 }> = inner.kids.drain(..).map(Some).collect();
+    nine.push(Some(sibling));
+    let mut items: ArrayVec<Item<V>, { LANES + 1 }> =
+        (0..).zip(nine.iter().flatten()).map(|(index, kid)| Item { bound: kid.bound(), index }).collect();
+    let left = halve(&mut items, LEAST_SIDE);
+    let mut other = Inner::empty(places.new_node(), inner.level);
+    inner.lanes = V::no_lanes();
+    for (i, item) in items.iter().enumerate() {
+        let into = if i < left { &mut *inner } else { &mut other };
+        if let Some(kid) = nine[item.index as usize].take() {
+            adopt(into, kid, places);
+        }
+    }
+    inner.arranged = inner.spread();
+    other.arranged = other.spread();
+    Kid::Inner(Arc::new(other))
 }

@@ -1,93 +1,115 @@
-//! What the dynamic tree is made of.
+//! The dynamic tree from outside: what it holds, and how changes are handed to it.
 //!
-//! A binary tree of boxes in a flat array. Every leaf has two boxes: the tight one, which decides what is reported, and
-//! a fattened one, in which it may move without changing the tree. An inner node's box is the union of its children's
-//! fat boxes. Indices are never negative and [`NONE`] stands for no node.
+//! Changes are noted down and made together by [`DynamicTree::settle`], in the order of the tree: each node is then copied
+//! and measured once, however many of its entries changed. Questions asked in between answer by the changes all the same.
 
-use super::pages::Pages;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::maintain::Upkeep;
+use super::node::{Entry, Inner, Kid, Leaf};
+use super::places::{Place, Places};
+use super::volume::BoundingVolume;
 use crate::geometry::Aabb;
-
-/// How far a leaf's box is fattened on every side, as a part of its longest side. Larger saves reinsertions of
-/// moving bodies, and makes every traversal visit more nodes.
-pub const FATTENING_FRACTION: f64 = 1.0 / 16.0;
-
-/// The most a leaf's box is fattened on a side, metres: what a body of a few metres a second moves between two updates
-/// at 100 Hz. Larger would make the boxes of large bodies (floors, walls) reach into everything near them.
-pub const FATTENING_CAP: f64 = 0.05;
-
-/// Stands for no node and no leaf.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// The `height` of a node that is on the free list.
-pub(super) const FREE: u32 = u32::MAX;
 
 /// Names an entry of a tree, from its insertion to its removal; afterwards another entry may get the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProxyId(pub(super) u32);
 
-/// Boxes with a number each, kept so that the ones that meet a box, or are near it, are found without looking at all.
+/// Bounding volumes with a number each, kept so that the ones that meet a volume, or are near it, are found without
+/// looking at all.
 ///
 /// A clone shares everything with its original until one of them changes, and a change copies little: versions for
-/// concurrent readers are cheap. Boxes must be finite and not empty; coordinates up to 1e103 metres are exact enough.
+/// concurrent readers are cheap. Volumes must be finite and not empty.
 #[derive(Clone, Debug)]
-pub struct DynamicTree {
-    pub(super) nodes: Pages<Node>,
-    pub(super) leaves: Pages<Leaf>,
-    pub(super) root: u32,
-    pub(super) first_free_node: u32,
-    pub(super) first_free_leaf: u32,
+pub struct DynamicTree<V: BoundingVolume = Aabb> {
+    pub(super) root: Option<Kid<V>>,
+    pub(super) places: Places,
+    /// Changes not made yet, in their order.
+    pub(super) waiting: Vec<Change<V>>,
     pub(super) count: usize,
+    pub(super) upkeep: Upkeep,
 }
 
-/// One cache line.
-#[derive(Clone, Debug)]
-pub(super) struct Node {
-    /// Holds everything below.
-    pub(super) fat: Aabb,
-    /// The node above; of a free node the next free one.
-    pub(super) parent: u32,
-    /// First child; [`NONE`] for a leaf.
-    pub(super) left: u32,
-    /// Second child; for a leaf the index of its [`Leaf`].
-    pub(super) right: u32,
-    /// Zero for a leaf, else one more than the taller child's; [`FREE`] on the free list.
-    pub(super) height: u32,
+/// What is to become of a slot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change<V> {
+    pub(super) volume: V,
+    pub(super) slot: u32,
+    pub(super) kind: ChangeKind,
 }
 
-/// What the tree keeps for an entry, apart from its node, since traversals read it only when the fat box is met.
-#[derive(Clone, Debug)]
-pub(super) struct Leaf {
-    pub(super) tight: Aabb,
-    /// The caller's number; of a free leaf the index of the next free one.
-    pub(super) payload: u64,
-    /// [`NONE`] for a free leaf.
-    pub(super) node: u32,
-    /// How often the node's box was changed since the leaf got its place.
-    pub(super) stretches: u32,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ChangeKind {
+    Insert {
+        payload: u64,
+    },
+    Move,
+    Remove,
+    /// An insertion that was taken back.
+    Nothing,
 }
 
-impl Node {
-    pub(super) fn is_leaf(&self) -> bool {
-        self.left == NONE
-    }
-}
-
-impl DynamicTree {
+impl<V: BoundingVolume> DynamicTree<V> {
     /// A tree without entries.
     #[must_use]
     pub fn new() -> Self {
-        Self {
-            nodes: Pages::new(),
-            leaves: Pages::new(),
-            root: NONE,
-            first_free_node: NONE,
-            first_free_leaf: NONE,
-            count: 0,
+        Self { root: None, places: Places::new(), waiting: Vec::new(), count: 0, upkeep: Upkeep::default() }
+    }
+
+    /// Adds an entry: a volume, metres, and the caller's number for it.
+    pub fn insert(&mut self, volume: V, payload: u64) -> ProxyId {
+        let slot = self.places.new_slot(self.waiting.len());
+        self.waiting.push(Change { volume, slot, kind: ChangeKind::Insert { payload } });
+        self.count += 1;
+        ProxyId(slot)
+    }
+
+    /// Removes an entry. Its name may be given to another one afterwards.
+    pub fn remove(&mut self, proxy: ProxyId) {
+        self.count -= 1;
+        match self.places.place(proxy.0) {
+            Place::Waiting(index) => {
+                self.waiting[index as usize].kind = ChangeKind::Nothing;
+                self.places.free_slot(proxy.0);
+            }
+            Place::Leaf(_) => {
+                let volume = match self.waiting.last() {
+                    Some(change) => change.volume,
+                    None => self.tight(proxy),
+                };
+                self.waiting.push(Change { volume, slot: proxy.0, kind: ChangeKind::Remove });
+            }
+            Place::Free => unreachable!("an entry is removed once"),
         }
     }
 
-    /// To be called after a list of changes and before the next question: puts right what the changes put off.
-    pub fn settle(&mut self) {}
+    /// Gives an entry another volume, metres. Says whether the tree has to change for it.
+    pub fn move_to(&mut self, proxy: ProxyId, volume: V) -> bool {
+        match self.places.place(proxy.0) {
+            Place::Waiting(index) => self.waiting[index as usize].volume = volume,
+            Place::Leaf(_) => self.waiting.push(Change { volume, slot: proxy.0, kind: ChangeKind::Move }),
+            Place::Free => unreachable!("an entry that is gone does not move"),
+        }
+        true
+    }
+
+    /// To be called after a list of changes and before the next question: makes the changes, and a share of upkeep that
+    /// is bounded by their number. A question asked before has to make them for itself.
+    pub fn settle(&mut self) {
+        self.flush();
+        self.maintain();
+    }
+
+    /// This tree with its changes made.
+    pub(super) fn settled(&self) -> Cow<'_, Self> {
+        if self.waiting.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut settled = self.clone();
+        settled.flush();
+        Cow::Owned(settled)
+    }
 
     /// Number of entries.
     #[must_use]
@@ -101,88 +123,89 @@ impl DynamicTree {
         self.count == 0
     }
 
-    /// The box of an entry, as it was given last.
+    /// The volume of an entry, as it was given last.
     #[must_use]
-    pub fn tight(&self, proxy: ProxyId) -> Aabb {
-        self.leaves[proxy.0].tight
+    pub fn tight(&self, proxy: ProxyId) -> V {
+        let changed = self.waiting.iter().rev().find(|change| change.slot == proxy.0);
+        changed.map_or_else(|| self.placed(proxy).volume, |change| change.volume)
     }
 
     /// The number of an entry.
     #[must_use]
     pub fn payload(&self, proxy: ProxyId) -> u64 {
-        self.leaves[proxy.0].payload
-    }
-
-    /// All entries, in no order that means anything: number and tight box.
-    pub fn iter(&self) -> impl Iterator<Item = (u64, Aabb)> + '_ {
-        self.live_leaves().map(|leaf| (leaf.payload, leaf.tight))
-    }
-
-    pub(super) fn live_leaves(&self) -> impl Iterator<Item = &Leaf> {
-        let slots = u32::try_from(self.leaves.len()).expect("allocation keeps indices within u32");
-        (0..slots).map(|slot| &self.leaves[slot]).filter(|leaf| leaf.node != NONE)
-    }
-
-    /// A node from the free list, or a new one.
-    pub(super) fn allocate_node(&mut self, node: Node) -> u32 {
-        let index = self.first_free_node;
-        if index == NONE {
-            let index = u32::try_from(self.nodes.len()).ok().filter(|index| *index < NONE);
-            self.nodes.push(node);
-            return index.expect("a tree has fewer than 2^32 - 1 nodes");
+        if let Place::Waiting(index) = self.places.place(proxy.0)
+            && let ChangeKind::Insert { payload } = self.waiting[index as usize].kind
+        {
+            return payload;
         }
-        self.first_free_node = self.nodes[index].parent;
-        self.nodes[index] = node;
-        index
+        self.placed(proxy).payload
     }
 
-    pub(super) fn free_node(&mut self, index: u32) {
-        let next = self.first_free_node;
-        let node = &mut self.nodes[index];
-        node.parent = next;
-        node.height = FREE;
-        self.first_free_node = index;
-    }
-
-    /// A leaf from the free list, or a new one.
-    pub(super) fn allocate_leaf(&mut self, leaf: Leaf) -> u32 {
-        let index = self.first_free_leaf;
-        if index == NONE {
-            // There are more nodes than leaves, so this cannot be the index that runs out.
-            let index = self.leaves.len() as u32;
-            self.leaves.push(leaf);
-            return index;
+    /// All entries, in no order that means anything: number and volume as it was given last.
+    pub fn iter(&self) -> impl Iterator<Item = (u64, V)> + '_ {
+        let mut changed: BTreeMap<u32, &Change<V>> = BTreeMap::new();
+        let mut added = Vec::new();
+        for change in &self.waiting {
+            match change.kind {
+                ChangeKind::Insert { payload } => added.push((payload, change.volume)),
+                ChangeKind::Move | ChangeKind::Remove => drop(changed.insert(change.slot, change)),
+                ChangeKind::Nothing => {}
+            }
         }
-        self.first_free_leaf = self.leaves[index].payload as u32;
-        self.leaves[index] = leaf;
-        index
+        let placed = self.leaves().flat_map(Leaf::all).filter_map(move |entry| match changed.get(&entry.slot) {
+            None => Some((entry.payload, entry.volume)),
+            Some(change) if change.kind == ChangeKind::Remove => None,
+            Some(change) => Some((entry.payload, change.volume)),
+        });
+        added.into_iter().chain(placed)
     }
 
-    pub(super) fn free_leaf(&mut self, index: u32) {
-        let next = u64::from(self.first_free_leaf);
-        let leaf = &mut self.leaves[index];
-        leaf.node = NONE;
-        leaf.payload = next;
-        self.first_free_leaf = index;
+    /// All leaves in the order of the tree.
+    pub(super) fn leaves(&self) -> impl Iterator<Item = &Leaf<V>> {
+        let mut stack: Vec<&Kid<V>> = self.root.iter().collect();
+        std::iter::from_fn(move || {
+            loop {
+                match stack.pop()? {
+                    Kid::Leaf(leaf) => return Some(&**leaf),
+                    Kid::Inner(inner) => stack.extend(inner.kids.iter().rev()),
+                }
+            }
+        })
+    }
+
+    /// All inner nodes, parents before children.
+    pub(super) fn inner_nodes(&self) -> impl Iterator<Item = &Inner<V>> {
+        let mut stack: Vec<&Kid<V>> = self.root.iter().collect();
+        std::iter::from_fn(move || {
+            loop {
+                if let Kid::Inner(inner) = stack.pop()? {
+                    stack.extend(inner.kids.iter().rev());
+                    return Some(&**inner);
+                }
+            }
+        })
+    }
+
+    /// An entry that is in the tree.
+    fn placed(&self, proxy: ProxyId) -> Entry<V> {
+        let Place::Leaf(leaf) = self.places.place(proxy.0) else { unreachable!("the entry is in the tree") };
+        let mut way = Vec::new();
+        let mut node = leaf;
+        while let Some((parent, lane)) = self.places.parent(node) {
+            way.push(lane);
+            node = parent;
+        }
+        let mut kid = self.root.as_ref();
+        while let Some(Kid::Inner(inner)) = kid {
+            kid = way.pop().and_then(|lane| inner.kids.get(lane));
+        }
+        let Some(Kid::Leaf(leaf)) = kid else { unreachable!("the way to an entry ends in its leaf") };
+        leaf.lane_of(proxy.0).map(|lane| leaf.entry(lane)).expect("a leaf holds the entries that are placed in it")
     }
 }
 
-impl Default for DynamicTree {
+impl<V: BoundingVolume> Default for DynamicTree<V> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// The box in which an entry may move without changing the tree.
-pub(super) fn fattened(tight: &Aabb) -> Aabb {
-    let longest = (tight.max - tight.min).max();
-    tight.grown((FATTENING_FRACTION * longest).min(FATTENING_CAP))
-}
-
-/// What a traversal pays for a box: its surface, by the surface-area heuristic, and a little for its length, so that
-/// lines and points, which have no surface, are told apart too. Grows with the box.
-pub(super) fn visit_cost(aabb: &Aabb) -> f64 {
-    let sides = aabb.max - aabb.min;
-    let sum = sides.x + sides.y + sides.z;
-    aabb.half_area() + sum * sum / 64.0
 }

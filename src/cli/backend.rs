@@ -7,7 +7,7 @@ use super::robot_files::RobotFiles;
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckStates};
 use crate::robot::{LinkOptions, MeshUse, ModelOptions};
-use crate::scene::{BodyId, Edit, NewBody, Revision};
+use crate::scene::{BodyId, Edit, NewBody, Revision, SceneOptions};
 use crate::service::{self, Change, ContentHash, Patience, RobotDescription, Service, ServiceError, Target};
 #[cfg(feature = "grpc")]
 use crate::transports::grpc::{Client, RemoteEdit};
@@ -108,7 +108,7 @@ impl Backend {
     ) -> Result<MadeScene, Failed> {
         match self {
             Self::Library(service) => {
-                service.create_scene(name).map_err(Failed::failure)?;
+                service.create_scene(name, &SceneOptions::default()).map_err(Failed::failure)?;
                 let model = service.robots().get(&model.id).map_err(Failed::failure)?.model;
                 let robot = Edit::AddRobot { name: robot.to_owned(), model, base: Pose::identity() };
                 let edits = std::iter::once(robot).chain(bodies.into_iter().map(Edit::AddBody)).collect();

@@ -10,7 +10,9 @@ use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
 
 use super::json_field::{Field, FieldError};
-use crate::geometry::{Compound, InvalidShape, Part, Pose, Quaternion, Shape, TriangleMesh};
+use crate::geometry::{
+    Compound, Grid, HeightField, InvalidShape, Part, PointCloud, Pose, Quaternion, Shape, TriangleMesh,
+};
 
 /// Two placed shapes.
 #[derive(Clone, Debug)]
@@ -74,6 +76,8 @@ pub fn read_shape(shape: &Field) -> Result<Shape, FieldError> {
         "plane" => (&["normal", "offset"], Shape::plane(vector("normal")?, number("offset")?)),
         "mesh" => (&["vertices", "triangles", "solid"], read_mesh(&params)?),
         "compound" => (&["parts"], read_compound(&params)?),
+        "height_field" => (&["rows", "columns", "spacing", "heights", "floor"], read_height_field(&params)?),
+        "point_cloud" => (&["points", "radius"], read_point_cloud(&params)?),
         other => return Err(kind.error(format!("no shape is called {other:?}"))),
     };
     params.only(&[known, &["margin"]].concat())?;
@@ -103,6 +107,20 @@ fn read_compound(params: &Field) -> Result<Result<Shape, InvalidShape>, FieldErr
         parts.push(Part { shape: read_shape(&part.member("shape")?)?, pose: read_pose(&part.member("pose")?)? });
     }
     Ok(Compound::new(parts).map(|compound| Shape::compound(Arc::new(compound))))
+}
+
+fn read_height_field(params: &Field) -> Result<Result<Shape, InvalidShape>, FieldError> {
+    let [x, y] = params.member("spacing")?.exactly()?;
+    let (rows, columns) = (params.member("rows")?.index()?, params.member("columns")?.index()?);
+    let grid = Grid { rows, columns, spacing: [x.number()?, y.number()?] };
+    let (heights, floor) = (params.member("heights")?.numbers()?, params.member("floor")?.number()?);
+    Ok(HeightField::new(grid, heights, floor).map(|field| Shape::height_field(Arc::new(field))))
+}
+
+fn read_point_cloud(params: &Field) -> Result<Result<Shape, InvalidShape>, FieldError> {
+    let points = params.member("points")?.vectors()?;
+    let radius = params.optional("radius").map(|field| field.number()).transpose()?.unwrap_or(0.0);
+    Ok(PointCloud::new(&points).and_then(|cloud| Shape::point_cloud(Arc::new(cloud), radius)))
 }
 
 /// The pose of a frame in the world, or in the frame of a compound.
@@ -187,6 +205,8 @@ mod tests {
             ("plane", flat),
             ("mesh", tetrahedron),
             ("compound", json!({"parts": [{"shape": ball, "pose": pose}]})),
+            ("height_field", json!({"rows": 2, "columns": 2, "spacing": [1, 2], "heights": [0, 1, 2, 3], "floor": -1})),
+            ("point_cloud", json!({"points": [v, v], "radius": 0.1})),
         ] {
             let mut params = params;
             let plain = shape(json!({"type": kind, "params": params})).unwrap();
@@ -229,6 +249,19 @@ mod tests {
             (
                 json!({"type": "mesh", "params": {"vertices": [[0, 0, 0]], "triangles": [[0, 0, -1]]}}),
                 "a.params.triangles[0][2]: is another number, not an index",
+            ),
+            (
+                json!({"type": "height_field", "params": {"rows": 2, "columns": 2, "spacing": [1, 1], "heights": [1, 2, 3], "floor": 0}}),
+                "a.params: heights has 3 numbers, 4 are needed",
+            ),
+            (
+                json!({"type": "height_field", "params": {"rows": 2, "columns": -2, "spacing": [1, 1], "heights": [], "floor": 0}}),
+                "a.params.columns: is another number, not an index",
+            ),
+            (json!({"type": "point_cloud", "params": {"points": []}}), "a.params: points is empty"),
+            (
+                json!({"type": "point_cloud", "params": {"points": [[0, 0, 0]], "radius": -1}}),
+                "a.params: radius is negative: -1",
             ),
             (
                 json!({"type": "mesh", "params": {"vertices": [[0, 0, 0]], "triangles": [[0, 0, 1]]}}),

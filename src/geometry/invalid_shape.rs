@@ -35,6 +35,52 @@ pub enum InvalidShape {
         /// The field.
         field: &'static str,
     },
+    /// Zero where a length above zero is needed.
+    #[error("{field} is not positive: {value}")]
+    NotPositive {
+        /// The field.
+        field: &'static str,
+        /// What was given, metres.
+        value: f64,
+    },
+    /// Too little to be a shape.
+    #[error("{field} is {count}, at least {least} are needed")]
+    TooFew {
+        /// The field.
+        field: &'static str,
+        /// What was given.
+        count: usize,
+        /// How many there must be.
+        least: usize,
+    },
+    /// More than can be counted.
+    #[error("{field} has more than {limit} elements")]
+    TooMany {
+        /// The field.
+        field: &'static str,
+        /// How many there may be.
+        limit: u64,
+    },
+    /// A list whose length follows from other fields, and is another.
+    #[error("{field} has {count} numbers, {wanted} are needed")]
+    WrongCount {
+        /// The field.
+        field: &'static str,
+        /// What was given.
+        count: usize,
+        /// What the other fields ask for.
+        wanted: usize,
+    },
+    /// A height below the floor of its field.
+    #[error("heights[{sample}] is below the floor: {height} < {floor}")]
+    BelowFloor {
+        /// Which height.
+        sample: usize,
+        /// As it was given, metres.
+        height: f64,
+        /// Height of the floor, metres.
+        floor: f64,
+    },
     /// A normal without a direction.
     #[error("normal is zero")]
     ZeroNormal,

@@ -4,9 +4,11 @@
 //! Metres, radians, right-handed frames, `f64` throughout.
 
 mod aabb;
+mod bounding_ball;
 mod box_cast;
 mod compound;
 mod convex_hull;
+mod height_field;
 mod hull_builder;
 mod hull_climb;
 mod hull_interior;
@@ -17,7 +19,10 @@ mod length;
 pub mod mesh_file;
 mod mesh_tree;
 mod oriented_box;
+mod point_cloud;
 mod pose;
+mod ray;
+mod rigid_motion;
 mod shape;
 pub mod tolerance;
 mod triangle_mesh;
@@ -25,16 +30,21 @@ mod twin;
 pub mod vector;
 
 pub use aabb::Aabb;
+pub use bounding_ball::Ball;
 pub use box_cast::BoxCast;
 pub use compound::{Compound, Part};
 pub use convex_hull::ConvexHull;
+pub use height_field::{Column, Grid, HeightField, Patch};
 pub use hull_interior::HullInterior;
 pub use hull_surface::HullSurface;
 pub use invalid_shape::InvalidShape;
 pub use length::length;
 pub use mesh_tree::{Content, MOST_LEVELS, MeshTree, NodeId, Nodes, Siblings};
 pub use oriented_box::{MOST_SKEW, OrientedBox, TwinBox};
+pub use point_cloud::{PointCloud, Run};
 pub use pose::{InvalidPose, Placement, Pose, Quaternion};
+pub use ray::{InvalidRay, Ray};
+pub use rigid_motion::{InvalidMotion, LARGEST_TURN, RigidMotion};
 pub use shape::{Core, Shape};
 pub use triangle_mesh::TriangleMesh;
 pub use twin::{Twin, TwinVec3};

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::tolerance::LARGEST_LENGTH;
-use super::{Aabb, Compound, ConvexHull, InvalidShape, Placement, TriangleMesh, Vec3};
+use super::{Aabb, Column, Compound, ConvexHull, HeightField, InvalidShape, Placement, PointCloud, TriangleMesh, Vec3};
 
 /// A shape in its own frame: a core, and the radius of a ball swept over it (their Minkowski sum). Metres.
 #[derive(Clone, Debug)]
@@ -76,9 +76,19 @@ pub enum Core {
     Mesh(Arc<TriangleMesh>),
     /// The union of placed shapes.
     Compound(Arc<Compound>),
+    /// Terrain, solid down to a floor.
+    HeightField(Arc<HeightField>),
+    /// Points; with a swept radius the union of balls around them.
+    PointCloud(Arc<PointCloud>),
+    /// What lies under one triangle of a height field.
+    Column(Column),
 }
 
-fn length(field: &str, value: f64) -> Result<f64, InvalidShape> {
+/// Checks that a length is finite, not negative and within reach.
+///
+/// # Errors
+/// Names `field`.
+pub(super) fn length(field: &str, value: f64) -> Result<f64, InvalidShape> {
     let field = || field.to_owned();
     if !value.is_finite() {
         return Err(InvalidShape::NotFinite { field: field() });
@@ -212,6 +222,17 @@ impl Shape {
         Self::new(Core::Compound(compound), 0.0)
     }
 
+    /// Terrain that was made before, shared.
+    #[must_use]
+    pub fn height_field(field: Arc<HeightField>) -> Self {
+        Self::new(Core::HeightField(field), 0.0)
+    }
+
+    /// The union of balls of that radius around the points. # Errors: a negative or non-finite radius.
+    pub fn point_cloud(cloud: Arc<PointCloud>, radius: f64) -> Result<Self, InvalidShape> {
+        Ok(Self::new(Core::PointCloud(cloud), length("radius", radius)?))
+    }
+
     /// The same shape with `extra` metres added to its swept radius. A half-space or plane moves or thickens by that
     /// much; a compound grows part by part.
     ///
@@ -276,6 +297,9 @@ impl Shape {
             Core::Plane { .. } => "plane",
             Core::Mesh(_) => "mesh",
             Core::Compound(_) => "compound",
+            Core::HeightField(_) => "height_field",
+            Core::PointCloud(_) => "point_cloud",
+            Core::Column(_) => "column",
         }
     }
 
@@ -319,6 +343,11 @@ impl Core {
             Self::Plane { normal, offset } => Shape::plane(*normal, offset * f)?,
             Self::Mesh(mesh) => Shape::mesh(Arc::new(mesh.scaled(Vec3::repeat(f))?)),
             Self::Compound(compound) => Shape::compound(Arc::new(compound.scaled(f)?)),
+            Self::HeightField(field) => Shape::height_field(Arc::new(field.scaled(f)?)),
+            Self::PointCloud(cloud) => Shape::point_cloud(Arc::new(cloud.scaled(f)?), 0.0)?,
+            Self::Column(Column { top, floor }) => {
+                return Ok(Self::Column(Column { top: top.map(|p| p * f), floor: floor * f }));
+            }
         };
         Ok(shape.core)
     }
@@ -341,6 +370,9 @@ impl Core {
             Self::HalfSpace { .. } | Self::Plane { .. } => None,
             Self::Mesh(mesh) => Some(mesh.bounds()),
             Self::Compound(compound) => Some(compound.bounds()),
+            Self::HeightField(field) => Some(field.bounds()),
+            Self::PointCloud(cloud) => Some(cloud.bounds()),
+            Self::Column(column) => Some(Aabb::around(column.corners())),
         }
     }
 }

@@ -69,5 +69,8 @@ fn kind(shape: &Shape) -> u16 {
         Core::Plane { .. } => 10,
         Core::Mesh(_) => 11,
         Core::Compound(_) => 12,
+        Core::HeightField(_) => 13,
+        Core::PointCloud(_) => 14,
+        Core::Column(_) => 15,
     }
 }

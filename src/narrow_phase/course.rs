@@ -1,70 +1,65 @@
-//! Two sides of a walk down the trees of meshes, how they lie to one another, and what boxes and leaves say.
+//! Two sides of a walk down their trees, how they lie to one another, and what boxes and leaves say.
+
+use std::borrow::Borrow;
 
 use super::box_gaps::{BOX_ERROR_ULPS, Facing};
 use super::convex::{self, Convex};
 use super::goal::Goal;
 use super::outcome::Separation;
-use super::pieces::{Piece, mesh_of};
-use super::support::{radius, support};
+use super::pieces::Piece;
+use super::support::radius;
+use super::trees::{Inside, Tree, any_point};
 use super::triangles::TrianglePair;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
-use crate::geometry::vector::opposite;
-use crate::geometry::{Content, Core, MeshTree, NodeId, Nodes, Placement, Siblings, Twin, TwinBox, Vec3, length};
+use crate::geometry::vector::{ORIGIN, opposite};
+use crate::geometry::{Core, Placement, Twin, Vec3, length};
 
 /// One side of a walk.
 #[derive(Clone, Copy)]
-pub(super) struct Side<'a> {
+pub(super) struct Side<'a, T> {
     pub piece: &'a Piece<'a>,
-    pub nodes: Nodes<'a>,
-    /// None for a convex piece, which is a leaf of its own.
-    tree: Option<&'a MeshTree>,
+    pub tree: T,
 }
 
-impl<'a> Side<'a> {
-    /// `alone`: the piece's bounds, which stand for the tree that a convex piece does not have.
-    pub fn new(piece: &'a Piece<'a>, alone: &'a Siblings) -> Self {
-        let tree = mesh_of(piece).map(|mesh| mesh.tree());
-        Self { piece, nodes: tree.map_or_else(|| Nodes::alone(alone), MeshTree::nodes), tree }
-    }
-
-    /// The number of what is in a leaf: the triangle's in its mesh, or the piece's own.
-    pub fn number(&self, leaf: usize) -> u32 {
-        self.tree.map_or(self.piece.part, |tree| tree.number(leaf))
+impl<'a, T: Tree<'a>> Side<'a, T> {
+    /// The number of what is in a leaf: its own in its tree, or the piece's.
+    pub fn number(&self, leaf: T::Leaf) -> u32 {
+        self.tree.number(leaf).unwrap_or(self.piece.part)
     }
 
     /// What is in a leaf.
-    fn with_core<T>(&self, leaf: usize, then: impl FnOnce(&Core) -> T) -> T {
-        match self.tree {
-            Some(tree) => then(&Core::Triangle(*tree.corners(leaf))),
+    pub fn with_core<R>(&self, leaf: T::Leaf, then: impl FnOnce(&Core) -> R) -> R {
+        match self.tree.core(leaf) {
+            Some(core) => then(&core),
             None => then(self.piece.shape.core()),
         }
     }
 
-    fn convex<'c>(&'c self, core: &'c Core) -> Convex<'c> {
+    pub fn convex<'c>(&'c self, core: &'c Core) -> Convex<'c> {
         let Piece { swept_radius, at, placement_error, given, .. } = self.piece;
         Convex { core, swept_radius: *swept_radius, at, placement_error: *placement_error, given: *given }
     }
 
     /// Any point of the piece, in its frame.
     pub fn any_point(&self) -> Vec3 {
-        self.with_core(0, |core| support(core, Vec3::z()))
+        any_point(self.piece.shape.core()).unwrap_or(ORIGIN)
     }
 }
 
 /// A pair of nodes with one of them opened.
-pub(super) enum Opened<'a> {
+pub(super) enum Opened<'a, T: Tree<'a>> {
     /// Children of a node of A, and a node of B.
-    A { one: NodeId, two: &'a TwinBox },
+    A { one: T::Node, two: T::Boxes },
     /// A node of A, and children of a node of B.
-    B { one: NodeId, two: &'a TwinBox },
+    B { one: T::Node, two: T::Boxes },
 }
 
 /// What comes after a pair of nodes.
-pub(super) enum Next<'a> {
+pub(super) enum Next<'a, T: Tree<'a>> {
     /// Two pairs of nodes.
-    Children(Opened<'a>, [(NodeId, NodeId); 2]),
+    Children(Opened<'a, T>, [(T::Node, T::Node); 2]),
     /// Two leaves.
-    Leaves(usize, usize),
+    Leaves(T::Leaf, T::Leaf),
 }
 
 /// What the boxes of two pairs of nodes say.
@@ -77,9 +72,9 @@ pub(super) struct Bounds {
 }
 
 /// What stays the same on a walk: two sides, how they lie to one another, and how far numbers may be off.
-pub(super) struct Course<'a> {
-    pub a: Side<'a>,
-    pub b: Side<'a>,
+pub(super) struct Course<'a, T> {
+    pub a: Side<'a, T>,
+    pub b: Side<'a, T>,
     pub b_in_a: Placement,
     a_in_b: Placement,
     /// What a gap of two boxes may be off by, and the swept radii: taken off, it is a lower bound. Metres.
@@ -90,8 +85,8 @@ pub(super) struct Course<'a> {
     pub radii: f64,
 }
 
-impl<'a> Course<'a> {
-    pub fn new(a: Side<'a>, b: Side<'a>) -> Self {
+impl<'a, T: Tree<'a>> Course<'a, T> {
+    pub fn new(a: Side<'a, T>, b: Side<'a, T>) -> Self {
         let b_in_a = Placement::relative(&a.piece.at, &b.piece.at);
         let inverse = b_in_a.rotation.transpose();
         let a_in_b = Placement::computed(inverse, -(inverse * b_in_a.translation));
@@ -105,19 +100,19 @@ impl<'a> Course<'a> {
     }
 
     /// The whole of both sides, as if B's root were a pair of children.
-    pub fn roots(&self) -> Opened<'a> {
-        Opened::B { one: NodeId::ROOT, two: self.b.nodes.both([NodeId::ROOT; 2]) }
+    pub fn roots(&self) -> Opened<'a, T> {
+        Opened::B { one: self.a.tree.root(), two: self.b.tree.root_twice() }
     }
 
     /// Lower bounds of the signed distance of what is in two pairs of nodes, as good as is needed to tell whether they are
     /// above `threshold`. `normal`: a direction from A to B that is worth asking about first, in both frames.
-    pub fn bounds(&self, pair: &Opened, normal: Option<[Vec3; 2]>, threshold: f64) -> Bounds {
+    pub fn bounds(&self, pair: &Opened<'a, T>, normal: Option<[Vec3; 2]>, threshold: f64) -> Bounds {
         let (facing, normal) = match pair {
             Opened::A { one, two } => {
                 let from_b = normal.map(|[in_a, in_b]| [opposite(in_b), opposite(in_a)]);
-                (Facing::new(self.b.nodes.bounds(*one), two, &self.a_in_b), from_b)
+                (Facing::new(self.b.tree.bounds(*one), two.borrow(), &self.a_in_b), from_b)
             }
-            Opened::B { one, two } => (Facing::new(self.a.nodes.bounds(*one), two, &self.b_in_a), normal),
+            Opened::B { one, two } => (Facing::new(self.a.tree.bounds(*one), two.borrow(), &self.b_in_a), normal),
         };
         let slack = Twin::splat(self.slack);
         // Whether two boxes meet is told best by their faces, how far apart they are by their near points.
@@ -144,27 +139,27 @@ impl<'a> Course<'a> {
 
     /// The pair opened at its larger side, whose box says least.
     #[inline(always)]
-    pub fn open(&self, a: NodeId, b: NodeId) -> Next<'a> {
-        let (nodes_a, nodes_b) = (&self.a.nodes, &self.b.nodes);
-        match (nodes_a.content(a), nodes_b.content(b)) {
-            (Content::Leaf(a), Content::Leaf(b)) => Next::Leaves(a, b),
-            (Content::Children(children), other)
-                if matches!(other, Content::Leaf(_)) || nodes_a.size(a) >= nodes_b.size(b) =>
+    pub fn open(&self, a: T::Node, b: T::Node) -> Next<'a, T> {
+        let (tree_a, tree_b) = (&self.a.tree, &self.b.tree);
+        match (tree_a.inside(a), tree_b.inside(b)) {
+            (Inside::Leaf(a), Inside::Leaf(b)) => Next::Leaves(a, b),
+            (Inside::Children(children), other)
+                if matches!(other, Inside::Leaf(_)) || tree_a.size(a) >= tree_b.size(b) =>
             {
-                let opened = Opened::A { one: b, two: nodes_a.both(children) };
+                let opened = Opened::A { one: b, two: tree_a.both(children) };
                 Next::Children(opened, children.map(|child| (child, b)))
             }
-            (_, Content::Children(children)) => {
-                let opened = Opened::B { one: a, two: nodes_b.both(children) };
+            (_, Inside::Children(children)) => {
+                let opened = Opened::B { one: a, two: tree_b.both(children) };
                 Next::Children(opened, children.map(|child| (a, child)))
             }
-            (Content::Children(_), Content::Leaf(_)) => unreachable!("covered by the second arm"),
+            (Inside::Children(_), Inside::Leaf(_)) => unreachable!("covered by the second arm"),
         }
     }
 
-    /// The triangles of two leaves, in A's frame; none unless both sides are meshes, of sizes whose products are exact enough.
-    pub fn triangles(&self, a: usize, b: usize) -> Option<TrianglePair> {
-        let (a, in_b) = (self.a.tree?.corners(a), self.b.tree?.corners(b));
+    /// The triangles of two leaves, in A's frame; none unless both are of meshes, of sizes whose products are exact enough.
+    pub fn triangles(&self, a: T::Leaf, b: T::Leaf) -> Option<TrianglePair> {
+        let (a, in_b) = (self.a.tree.triangle(a)?, self.b.tree.triangle(b)?);
         let reach = |t: &[Vec3; 3]| t.iter().map(|p| p.norm_squared()).fold(0.0, f64::max).sqrt();
         let extent = reach(a) + reach(in_b) + self.distance;
         let (least, greatest) = UNSCALED_EXTENT;
@@ -179,12 +174,12 @@ impl<'a> Course<'a> {
     }
 
     /// Names the triangles or pieces in two leaves.
-    pub fn named(&self, found: Separation, a: usize, b: usize) -> Separation {
+    pub fn named(&self, found: Separation, a: T::Leaf, b: T::Leaf) -> Separation {
         Separation { subshape_a: self.a.number(a), subshape_b: self.b.number(b), ..found }
     }
 
     /// Whatever is in two leaves, by GJK and EPA.
-    pub fn by_gjk(&self, a: usize, b: usize, goal: &Goal) -> Separation {
+    pub fn by_gjk(&self, a: T::Leaf, b: T::Leaf, goal: &Goal) -> Separation {
         let found = self.a.with_core(a, |core_a| {
             self.b.with_core(b, |core_b| convex::separation(self.a.convex(core_a), self.b.convex(core_b), goal))
         });

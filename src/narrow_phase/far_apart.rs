@@ -8,10 +8,10 @@ use super::goal::{Depth, Goal};
 use super::minkowski::Vertex;
 use super::outcome::{Cost, Separation, Termination};
 use super::sat_boxes::Faces;
-use super::support::{is_convex, support};
+use super::trees::any_point;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
-use crate::geometry::{Aabb, Core, Placement, Shape, Vec3, length};
+use crate::geometry::{Aabb, Placement, Shape, length};
 
 /// The answer, where the normal of a face of one of the boxes parts them and no more is asked for; none otherwise, and for
 /// compounds, whose parts have boxes of their own. The witness is any pair of points.
@@ -42,15 +42,6 @@ pub(super) fn parted(a: &Shape, b: &Shape, at_a: &Placement, at_b: &Placement, g
     let cost = Cost { pairs: 1, ..Cost::default() };
     let a = Convex { core: a.core(), swept_radius: 0.0, at: at_a, placement_error: 0.0, given: Given::alone(a, at_a) };
     Some(place(&found, bracket, &a, &target, error, cost))
-}
-
-/// Of a mesh one of triangle 0, which the answer names; a vertex may belong to no triangle.
-fn any_point(core: &Core) -> Option<Vec3> {
-    if let Core::Mesh(mesh) = core {
-        let [point, _, _] = mesh.triangle(0);
-        return Some(point);
-    }
-    is_convex(core).then(|| support(core, Vec3::new(0.0, 0.0, 1.0)))
 }
 
 /// No point of the box is farther from the origin, metres.

@@ -6,6 +6,7 @@ use super::goal::{Depth, Goal};
 use super::outcome::{Bracket, Cost, Separation, Termination};
 use super::solver::Solver;
 use super::support::unit;
+use super::trees::Tree;
 use super::triangles::TrianglePair;
 use super::witness::{self, WITNESS_ERROR_ULPS};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
@@ -19,10 +20,10 @@ pub(super) enum Leaves {
     Known(Separation),
 }
 
-impl Course<'_> {
+impl<'t, T: Tree<'t>> Course<'t, T> {
     /// What is in two leaves, as far as `goal` needs it and unless it is beyond `threshold`. `normal`: a direction worth asking about first, as
     /// for boxes.
-    pub fn leaves(&self, a: usize, b: usize, goal: &Goal, threshold: f64, normal: Option<[Vec3; 2]>) -> Leaves {
+    pub fn leaves(&self, a: T::Leaf, b: T::Leaf, goal: &Goal, threshold: f64, normal: Option<[Vec3; 2]>) -> Leaves {
         // A solver that was asked for by name does all the work itself.
         let triangles = self.triangles(a, b).filter(|_| goal.solver == Solver::Default);
         let by_features = triangles.and_then(|pair| {

@@ -80,7 +80,10 @@ impl Middle {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Mesh(_)
-            | Core::Compound(_) => None,
+            | Core::Compound(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_)
+            | Core::Column(_) => None,
         }
     }
 }
@@ -113,6 +116,9 @@ fn gauge(core: &Core, t: Vec3) -> f64 {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => f64::INFINITY,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => f64::INFINITY,
     }
 }

@@ -93,7 +93,10 @@ pub(super) fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
         | Core::Triangle(_)
         | Core::Segment(_)
         | Core::Mesh(_)
-        | Core::Compound(_) => return None,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => return None,
     };
     Some(Unbounded {
         normal,

@@ -116,7 +116,10 @@ impl Profile {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Mesh(_)
-            | Core::Compound(_) => None,
+            | Core::Compound(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_)
+            | Core::Column(_) => None,
         }
     }
 

@@ -45,7 +45,10 @@ fn placed(body: &Convex) -> Option<Half> {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => return None,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => return None,
     };
     Some(Half { middle, half, square: half.norm_squared(), reach: length(middle) + length(half) })
 }

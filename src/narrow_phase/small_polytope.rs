@@ -62,7 +62,10 @@ impl SmallPolytope {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Mesh(_)
-            | Core::Compound(_) => return None,
+            | Core::Compound(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_)
+            | Core::Column(_) => return None,
         }
         Some(polytope)
     }

@@ -61,7 +61,10 @@ fn is_smooth(core: &Core) -> bool {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => false,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => false,
     }
 }
 

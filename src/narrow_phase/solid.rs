@@ -5,10 +5,11 @@ use super::goal::Goal;
 use super::inside::is_inside;
 use super::outcome::{Bracket, Separation, Termination};
 use super::pieces::{Piece, Pieces, least_of_pieces, mesh_of};
-use super::support::{is_convex, radius, support};
+use super::support::radius;
+use super::trees::any_point;
 use super::walk::walk;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Aabb, Core, Mat3, Placement, Shape, TriangleMesh, Vec3, length};
+use crate::geometry::{Aabb, Core, Mat3, Placement, PointCloud, Shape, TriangleMesh, Vec3, length};
 
 /// The separation of the surfaces of two pieces, corrected where one is wholly inside the other and that is solid.
 ///
@@ -26,7 +27,7 @@ pub(super) fn with_containment(surfaces: Separation, a: &Piece, b: &Piece, goal:
         return Separation { bracket, termination: Termination::TimeLimit, ..surfaces };
     }
     let gap = surfaces.bracket.lower;
-    match (contains(a, b, gap), contains(b, a, gap)) {
+    match (contains(a, b, gap, goal), contains(b, a, gap, goal)) {
         (Some(false), Some(false)) => return surfaces,
         (Some(true), _) | (_, Some(true)) => {}
         (None, _) | (_, None) => {
@@ -45,9 +46,9 @@ fn may_contain(piece: &Piece) -> bool {
     mesh_of(piece).is_some_and(TriangleMesh::is_solid)
 }
 
-/// Whether `outer` is a solid mesh with a part of `inner` in it; none where that is too close to tell. Their surfaces are `gap` apart, so
-/// one point tells for all of a connected part.
-fn contains(outer: &Piece, inner: &Piece, gap: f64) -> Option<bool> {
+/// Whether `outer` is a solid mesh with a part of `inner` in it; none where that is too close to tell or time runs out. Their surfaces are
+/// `gap` apart, so one point tells for all of a connected part, and for all that is in a box smaller than the gap.
+fn contains(outer: &Piece, inner: &Piece, gap: f64, goal: &Goal) -> Option<bool> {
     let Some(mesh) = mesh_of(outer).filter(|mesh| mesh.is_solid()) else { return Some(false) };
     let inner_in_outer = Placement::relative(&outer.at, &inner.at);
     let extent = radius(outer.shape.core()) + radius(inner.shape.core()) + length(inner_in_outer.translation);
@@ -73,7 +74,43 @@ fn contains(outer: &Piece, inner: &Piece, gap: f64) -> Option<bool> {
         }
         return known;
     }
-    if is_convex(core) { is_in(support(core, Vec3::z())) } else { Some(false) }
+    if let Core::PointCloud(cloud) = core {
+        return holds_any(cloud, &mesh.bounds().grown(error), &inner_in_outer, gap, &is_in, goal);
+    }
+    any_point(core).map_or(Some(false), is_in)
+}
+
+/// Whether any point of a cloud, whose frame is at `place`, is in; none where that is open. What is not in the box is not.
+fn holds_any(
+    cloud: &PointCloud,
+    around: &Aabb,
+    place: &Placement,
+    gap: f64,
+    is_in: &impl Fn(Vec3) -> Option<bool>,
+    goal: &Goal,
+) -> Option<bool> {
+    let mut known = Some(false);
+    let mut open = vec![cloud.root()];
+    while let Some(run) = open.pop() {
+        let bounds = cloud.bounds_of(run);
+        let half = place.rotation.abs() * bounds.half_extents();
+        if !Aabb::centred(place.point(bounds.center()), half).grown(1e-9 * half.amax()).overlaps(around) {
+            continue;
+        }
+        if (goal.stop)() {
+            return None;
+        }
+        match cloud.halves(run) {
+            // No surface is between two points that are nearer to one another than to it.
+            Some(halves) if !(2.0 * length(bounds.half_extents()) < 0.999 * gap) => open.extend(halves),
+            Some(_) | None => match is_in(cloud.at(run.start())) {
+                Some(true) => return Some(true),
+                Some(false) => {}
+                None => known = None,
+            },
+        }
+    }
+    known
 }
 
 /// Whether a point in the frame of a mesh is farther than that from its triangles.

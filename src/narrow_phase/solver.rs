@@ -121,6 +121,9 @@ impl Solver {
             Core::Cylinder { .. } => Err("a cylinder is no polytope".to_owned()),
             Core::Cone { .. } => Err("a cone is no polytope".to_owned()),
             Core::Ellipsoid { .. } => Err("an ellipsoid is no polytope".to_owned()),
+            Core::HeightField(_) | Core::Column(_) if self == Self::Sat => {
+                Err("the columns of a height field have no list of faces".to_owned())
+            }
             Core::Compound(compound) => {
                 compound.parts().iter().try_for_each(|part| self.takes_polytope(part.shape.core()))
             }
@@ -138,7 +141,10 @@ impl Solver {
             | Core::Segment(_)
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
-            | Core::Mesh(_) => Ok(()),
+            | Core::Mesh(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_)
+            | Core::Column(_) => Ok(()),
         }
     }
 }

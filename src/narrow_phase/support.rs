@@ -1,7 +1,7 @@
 //! Support functions: the point of a core that lies farthest in a direction.
 
 use crate::geometry::vector::{ORIGIN, greatest_size};
-use crate::geometry::{Aabb, Core, Vec3, length};
+use crate::geometry::{Aabb, Column, Core, Vec3, length};
 
 /// A point of the convex, bounded core where `direction . x` is greatest, in the core's frame. Among equals the first.
 ///
@@ -37,7 +37,13 @@ pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
         Core::AxialSegment { half_length } => (Vec3::new(0.0, 0.0, half_length.copysign(d.z)), u32::from(d.z < 0.0)),
         Core::Segment(ends) => first_farthest(ends, d),
         Core::Cylinder { .. } | Core::Cone { .. } | Core::Ellipsoid { .. } => (round(core, d), 0),
-        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => {
+        Core::Column(column) => first_farthest(&column.corners(), d),
+        Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_) => {
             unreachable!("only convex, bounded cores have a support function")
         }
     }
@@ -71,7 +77,10 @@ fn round(core: &Core, d: Vec3) -> Vec3 {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => unreachable!("not round"),
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => unreachable!("not round"),
     }
 }
 
@@ -87,20 +96,28 @@ pub(super) fn corners(core: &Core) -> Vec<Vec3> {
         Core::Convex(hull) => hull.points().to_vec(),
         Core::Triangle(corners) => corners.to_vec(),
         Core::Segment(ends) => ends.to_vec(),
+        Core::Column(column) => column.corners().to_vec(),
         Core::Cylinder { .. }
         | Core::Cone { .. }
         | Core::Ellipsoid { .. }
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => Vec::new(),
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_) => Vec::new(),
     }
 }
 
 /// Whether the core has a support function.
 pub(super) fn is_convex(core: &Core) -> bool {
     match core {
-        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => false,
+        Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_) => false,
         Core::Point
         | Core::Cuboid { .. }
         | Core::AxialSegment { .. }
@@ -109,7 +126,8 @@ pub(super) fn is_convex(core: &Core) -> bool {
         | Core::Ellipsoid { .. }
         | Core::Convex(_)
         | Core::Triangle(_)
-        | Core::Segment(_) => true,
+        | Core::Segment(_)
+        | Core::Column(_) => true,
     }
 }
 
@@ -131,6 +149,9 @@ pub(super) fn radius(core: &Core) -> f64 {
         Core::HalfSpace { .. } | Core::Plane { .. } => 0.0,
         Core::Mesh(mesh) => box_corner(mesh.bounds()),
         Core::Compound(compound) => box_corner(compound.bounds()),
+        Core::HeightField(field) => box_corner(field.bounds()),
+        Core::PointCloud(cloud) => box_corner(cloud.bounds()),
+        Core::Column(column) => column.corners().iter().map(|p| length(*p)).fold(0.0, f64::max),
     }
 }
 
@@ -190,13 +211,16 @@ pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
             (n < 2).then(|| Vec3::new(0.0, 0.0, if n == 1 { -half_length } else { *half_length }))
         }
         Core::Point => (n == 0).then_some(ORIGIN),
+        Core::Column(column) => column.corners().get(n).copied(),
         Core::Cylinder { .. }
         | Core::Cone { .. }
         | Core::Ellipsoid { .. }
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => None,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_) => None,
     }
 }
 
@@ -206,6 +230,10 @@ pub(super) fn center(core: &Core) -> Vec3 {
         Core::Convex(hull) => hull.bounds().center(),
         Core::Triangle([a, b, c]) => (a + b + c) / 3.0,
         Core::Segment([a, b]) => (a + b) / 2.0,
+        Core::Column(Column { top: [a, b, c], floor }) => {
+            let [x, y, z] = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0);
+            Vec3::new(x, y, (z + floor) / 2.0)
+        }
         Core::Point
         | Core::Cuboid { .. }
         | Core::AxialSegment { .. }
@@ -215,7 +243,9 @@ pub(super) fn center(core: &Core) -> Vec3 {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
-        | Core::Compound(_) => ORIGIN,
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_) => ORIGIN,
     }
 }
 

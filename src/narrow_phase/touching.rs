@@ -6,6 +6,7 @@ use super::leaves::Leaves;
 use super::outcome::{Bracket, Cost};
 use super::pieces::{Pieces, mesh_of};
 use super::support::is_convex;
+use super::trees::Branches;
 use super::walk::{NODES_PER_STOP, ROOM};
 use crate::geometry::{Core, NodeId, OrientedBox, Placement, Shape, Siblings};
 
@@ -86,13 +87,16 @@ pub fn touching_pairs(
         return Err(refused);
     };
     let [alone_a, alone_b] = [box_a, box_b].map(|bounds| Siblings::alone(&OrientedBox::upright(&bounds)));
-    let course = Course::new(Side::new(&piece_a, &alone_a), Side::new(&piece_b, &alone_b));
+    let (Some(tree_a), Some(tree_b)) = (Branches::of(&piece_a, &alone_a), Branches::of(&piece_b, &alone_b)) else {
+        return Err(refused);
+    };
+    let course = Course::new(Side { piece: &piece_a, tree: tree_a }, Side { piece: &piece_b, tree: tree_b });
     let touching = search(&course, within, found);
     found.sort_unstable_by_key(|pair| (pair.a, pair.b));
     Ok(touching)
 }
 
-fn search(course: &Course, within: &Within, found: &mut Vec<TouchingPair>) -> Touching {
+fn search<'a>(course: &Course<'a, Branches<'a>>, within: &Within, found: &mut Vec<TouchingPair>) -> Touching {
     let margin = within.margin;
     let goal = Goal { depth: Depth::Verdict, margin, stop: within.stop, ..Goal::verdict() };
     let mut cost = Cost::default();

@@ -1,4 +1,4 @@
-//! A mesh against a convex piece or another mesh: down the trees, depth first, towards what looks nearest.
+//! A mesh, a cloud or terrain against a convex piece or another of them: down the trees, depth first, towards what looks nearest.
 //!
 //! A pair of nodes is opened when the boxes do not prove that it cannot change the answer: the larger of the two is
 //! replaced by its children, and of the two new pairs the one that looks nearer comes first. So the first leaves
@@ -8,6 +8,8 @@
 
 use std::f64::consts::PI;
 
+use arrayvec::ArrayVec;
+
 use super::course::{Course, Next, Side};
 use super::goal::Goal;
 use super::least::Least;
@@ -15,10 +17,11 @@ use super::leaves::{Cores, Leaves};
 use super::outcome::{Bracket, Separation, Termination};
 use super::pieces::{Piece, swapped, unbounded_of};
 use super::support::unit;
+use super::trees::{Branches, Growth, MOST_LEVELS, Tree};
 use super::wall;
-use crate::geometry::{MOST_LEVELS, NodeId, OrientedBox, Siblings, Vec3, length};
+use crate::geometry::{OrientedBox, Siblings, Vec3, length};
 
-/// The least separation of what is in two pieces, at least one of them a mesh; as far as the goal needs it.
+/// The least separation of what is in two pieces, at least one of them with a tree; as far as the goal needs it.
 pub(super) fn walk(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separation> {
     match (unbounded_of(a), unbounded_of(b)) {
         (None, Some(wall)) => wall::walk(a, wall, goal),
@@ -27,10 +30,17 @@ pub(super) fn walk(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separation> {
         (None, None) => {
             let alone = |piece: &Piece| Some(Siblings::alone(&OrientedBox::upright(&piece.shape.core().bounds()?)));
             let (alone_a, alone_b) = (alone(a)?, alone(b)?);
-            let course = Course::new(Side::new(a, &alone_a), Side::new(b, &alone_b));
-            Walk { course: &course, least: Least::new(goal), normal: None }.run()
+            if let (Some(tree_a), Some(tree_b)) = (Branches::of(a, &alone_a), Branches::of(b, &alone_b)) {
+                return along(Side { piece: a, tree: tree_a }, Side { piece: b, tree: tree_b }, goal);
+            }
+            let (tree_a, tree_b) = (Growth::of(a, &alone_a), Growth::of(b, &alone_b));
+            along(Side { piece: a, tree: tree_a }, Side { piece: b, tree: tree_b }, goal)
         }
     }
+}
+
+fn along<'a, T: Tree<'a>>(a: Side<'a, T>, b: Side<'a, T>, goal: &Goal) -> Option<Separation> {
+    Walk { course: &Course::new(a, b), least: Least::new(goal), normal: None }.run()
 }
 
 /// Pairs that wait at most: each pair on the way down leaves one behind, and each level of either tree is opened once.
@@ -40,28 +50,25 @@ pub(super) const NODES_PER_STOP: u64 = 16;
 
 /// A pair of nodes that waits to be opened, with a lower bound of the signed distance of what is in them.
 #[derive(Clone, Copy)]
-struct Waiting {
+struct Waiting<N> {
     lower: f64,
-    a: NodeId,
-    b: NodeId,
+    a: N,
+    b: N,
 }
 
-struct Walk<'a, 'g> {
-    course: &'a Course<'a>,
+struct Walk<'c, 't, 'g, T> {
+    course: &'c Course<'t, T>,
     least: Least<'g>,
     /// From A to B at the nearest pair so far, in both frames.
     normal: Option<[Vec3; 2]>,
 }
 
-impl<'g> Walk<'_, 'g> {
+impl<'t, T: Tree<'t>> Walk<'_, 't, '_, T> {
     fn run(mut self) -> Option<Separation> {
         let [lower, _] = self.course.bounds(&self.course.roots(), None, self.least.threshold()).lower;
-        let root = Waiting { lower, a: NodeId::ROOT, b: NodeId::ROOT };
-        let mut waiting = [root; ROOM];
-        let mut count = 1;
-        while count > 0 {
-            count -= 1;
-            let pair = waiting[count];
+        let mut waiting: ArrayVec<_, ROOM> = ArrayVec::new();
+        waiting.push(Waiting { lower, a: self.course.a.tree.root(), b: self.course.b.tree.root() });
+        while let Some(pair) = waiting.pop() {
             if self.least.leaves_out(pair.lower) {
                 continue;
             }
@@ -69,7 +76,8 @@ impl<'g> Walk<'_, 'g> {
                 && self.least.has_witness()
                 && self.least.must_stop()
             {
-                waiting[..=count].iter().for_each(|left| self.least.put_aside(left.lower));
+                self.least.put_aside(pair.lower);
+                waiting.iter().for_each(|left| self.least.put_aside(left.lower));
                 break;
             }
             let (opened, children) = match self.course.open(pair.a, pair.b) {
@@ -87,8 +95,7 @@ impl<'g> Walk<'_, 'g> {
                 let lower = bounds.lower[child].max(pair.lower);
                 if !self.least.leaves_out(lower) {
                     let (a, b) = children[child];
-                    waiting[count] = Waiting { lower, a, b };
-                    count += 1;
+                    waiting.push(Waiting { lower, a, b });
                 }
             }
         }
@@ -99,7 +106,7 @@ impl<'g> Walk<'_, 'g> {
         self.least.finish()
     }
 
-    fn leaves(&mut self, a: usize, b: usize) {
+    fn leaves(&mut self, a: T::Leaf, b: T::Leaf) {
         match self.course.leaves(a, b, &self.least.goal(), self.least.threshold(), self.normal) {
             Leaves::Farther(lower) => self.least.put_aside(lower),
             Leaves::Known(found) => {

@@ -1,52 +1,58 @@
-//! A mesh against a half-space or a plane: down its tree, lowest boxes first.
+//! A mesh, a cloud or terrain against a half-space or a plane: down its tree, lowest boxes first.
+
+use std::borrow::Borrow;
+
+use arrayvec::ArrayVec;
 
 use super::box_gaps::BOX_ERROR_ULPS;
-use super::convex::Convex;
+use super::course::Side;
 use super::goal::Goal;
 use super::least::Least;
 use super::outcome::Separation;
-use super::pieces::{Piece, mesh_of};
+use super::pieces::Piece;
 use super::support::radius;
+use super::trees::{Branches, Growth, Inside, MOST_LEVELS, Tree};
 use super::unbounded::{self, Unbounded};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::{Content, Core, MOST_LEVELS, NodeId, Placement, TwinBox, Vec3, length};
+use crate::geometry::{OrientedBox, Placement, Siblings, TwinBox, Vec3, length};
 
-/// The least separation of the triangles of a mesh from an unbounded piece.
+/// The least separation of what is in a piece with a tree from an unbounded piece.
 pub(super) fn walk(a: &Piece, wall: Unbounded, goal: &Goal) -> Option<Separation> {
-    let tree = mesh_of(a)?.tree();
-    let nodes = tree.nodes();
-    let heights = Heights::new(a, &wall);
+    let alone = Siblings::alone(&OrientedBox::upright(&a.shape.core().bounds()?));
+    match Branches::of(a, &alone) {
+        Some(tree) => along(Side { piece: a, tree }, wall, goal),
+        None => along(Side { piece: a, tree: Growth::of(a, &alone) }, wall, goal),
+    }
+}
+
+fn along<'a, T: Tree<'a>>(a: Side<'a, T>, wall: Unbounded, goal: &Goal) -> Option<Separation> {
+    let heights = Heights::new(a.piece, &wall);
     let mut least = Least::new(goal);
-    let mut waiting = [(f64::NEG_INFINITY, NodeId::ROOT); MOST_LEVELS + 1];
-    let mut count = 1;
-    while count > 0 {
-        count -= 1;
-        let (lower, node) = waiting[count];
-        // Until one triangle has been looked at none is left out: its corners are the proof from above.
+    let mut waiting: ArrayVec<_, { MOST_LEVELS + 1 }> = ArrayVec::new();
+    waiting.push((f64::NEG_INFINITY, a.tree.root()));
+    while let Some((lower, node)) = waiting.pop() {
+        // Until one leaf has been looked at none is left out: its corners are the proof from above.
         if least.has_witness() {
             if least.leaves_out(lower) {
                 continue;
             }
             if least.must_stop() {
-                waiting[..=count].iter().for_each(|(lower, _)| least.put_aside(*lower));
+                least.put_aside(lower);
+                waiting.iter().for_each(|(lower, _)| least.put_aside(*lower));
                 break;
             }
         }
-        match nodes.content(node) {
-            Content::Leaf(leaf) => {
-                let triangle = Core::Triangle(*tree.corners(leaf));
-                let (swept_radius, placement_error) = (a.swept_radius, a.placement_error);
-                let convex = Convex { core: &triangle, swept_radius, at: &a.at, placement_error, given: a.given };
-                let found = unbounded::separation(convex, wall, &least.goal());
-                least.take(Separation { subshape_a: tree.number(leaf), ..found });
+        match a.tree.inside(node) {
+            Inside::Leaf(leaf) => {
+                let found = a.with_core(leaf, |core| unbounded::separation(a.convex(core), wall, &least.goal()));
+                least.take(Separation { subshape_a: a.number(leaf), ..found });
             }
-            Content::Children(children) => {
+            Inside::Children(children) => {
                 least.cost.nodes += 1;
-                let lowers = heights.lower_bounds(nodes.both(children));
+                let lowers = heights.lower_bounds(a.tree.both(children).borrow());
                 let nearer = usize::from(lowers[1] < lowers[0]);
                 for child in [1 - nearer, nearer] {
-                    waiting[count] = (lowers[child].max(lower), children[child]);
-                    count += 1;
+                    waiting.push((lowers[child].max(lower), children[child]));
                 }
             }
         }
@@ -54,11 +60,11 @@ pub(super) fn walk(a: &Piece, wall: Unbounded, goal: &Goal) -> Option<Separation
     least.finish()
 }
 
-/// Heights of a mesh's boxes over a wall.
+/// Heights of boxes over a wall.
 struct Heights {
-    /// In the mesh's frame.
+    /// In the piece's frame.
     up: Vec3,
-    /// Of the mesh's origin, metres.
+    /// Of the piece's origin, metres.
     origin: f64,
     thin: bool,
     /// Rounding and swept radii, metres.

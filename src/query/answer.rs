@@ -30,6 +30,8 @@ pub enum Indeterminacy {
     IterationLimit,
     /// The time ran out first.
     TimeLimit,
+    /// Of motions: a pair came nearer to contact, or to its margin, than the resolution, and no state that was looked at decides.
+    Resolution,
 }
 
 /// One side of a pair.
@@ -106,6 +108,24 @@ pub struct PairAnswer {
     pub termination: Termination,
 }
 
+/// Which part of a motion is proved. Times are fractions of it: 0 at the start, 1 at the goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionAnswer {
+    /// Every state before this time is proved free, farther than the margins. 1 for a motion that is `FREE`.
+    pub free_until: f64,
+    /// Of a `COLLISION`: every state before the first time is proved apart, and the state at the second is proved in
+    /// collision, so that the first contact is between them. Of a `MARGIN`: the same for coming within a margin. The pair of
+    /// [`ItemAnswer::nearest`] is in the state at the second time.
+    pub reached: Option<[f64; 2]>,
+    /// Of an `INDETERMINATE`: the first stretch that is not proved, and that no state decides. The pair of
+    /// [`ItemAnswer::nearest`] is in the state at its start.
+    pub undecided: Option<[f64; 2]>,
+    /// States that pairs were measured in.
+    pub states: u64,
+    /// Stretches of time that were proved, halved or given up.
+    pub intervals: u64,
+}
+
 /// The answer to one item.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ItemAnswer {
@@ -124,6 +144,8 @@ pub struct ItemAnswer {
     pub problem: Option<String>,
     /// More pairs were there than the limit lets through.
     pub truncated: bool,
+    /// Of motions: which part of them is proved.
+    pub motion: Option<MotionAnswer>,
     /// What it cost.
     pub cost: Cost,
 }
@@ -140,6 +162,7 @@ impl ItemAnswer {
             pairs: Vec::new(),
             problem: None,
             truncated: false,
+            motion: None,
             cost: Cost::default(),
         }
     }
@@ -162,6 +185,18 @@ pub struct Answer {
     pub cost: Cost,
 }
 
+impl Answer {
+    /// The answer as it is compared: the same for equal questions to equal snapshots, whatever the number of threads, the
+    /// door, the broad phase, and the edits that led to the snapshot. It leaves out how many nodes of trees were opened,
+    /// the only figure that depends on how the broad phase came about.
+    #[must_use]
+    pub fn canonical(mut self) -> Self {
+        self.cost.nodes = 0;
+        self.items.iter_mut().for_each(|item| item.cost.nodes = 0);
+        self
+    }
+}
+
 /// Why a whole request was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refused {
@@ -172,6 +207,14 @@ pub enum Refused {
         field: String,
         /// What is wrong with it.
         problem: String,
+    },
+    /// What changed since a revision is not known any more.
+    #[error("what changed since revision {asked} is not known any more; the oldest that can be asked is {oldest}")]
+    Gone {
+        /// The revision asked for.
+        asked: Revision,
+        /// The oldest that can be asked of this snapshot.
+        oldest: Revision,
     },
     /// Something that is not in the scene.
     #[error("no {what} {name:?} in the scene (revision {revision})")]

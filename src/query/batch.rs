@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
+use super::context::length;
+use super::motions::Motions;
 use super::pairs::Pairs;
-use super::request::{CheckStates, Mode, PairQuery};
+use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Mode, PairQuery};
 use super::states::States;
 use crate::narrow_phase::Cost;
 use crate::scene::Snapshot;
@@ -19,6 +21,7 @@ pub struct Prepared<'a> {
 
 enum Question<'a> {
     States(States<'a>),
+    Motions(Motions<'a>),
     Pairs(Pairs<'a>),
 }
 
@@ -35,6 +38,16 @@ impl<'a> Prepared<'a> {
     /// A context that cannot be, a robot that is not in the scene, positions that are no whole number of states.
     pub fn check_states(snapshot: &'a Snapshot, request: &'a CheckStates) -> Result<Self, Refused> {
         let question = Question::States(States::new(snapshot, request)?);
+        Ok(Self { snapshot, mode: request.mode, question })
+    }
+
+    /// Is the robot free all along these motions?
+    ///
+    /// # Errors
+    /// A context, resolution or number of states that cannot be, a robot that is not in the scene or does not move, positions
+    /// that are no whole number of motions.
+    pub fn check_motions(snapshot: &'a Snapshot, request: &'a CheckMotions) -> Result<Self, Refused> {
+        let question = Question::Motions(Motions::new(snapshot, request)?);
         Ok(Self { snapshot, mode: request.mode, question })
     }
 
@@ -56,11 +69,39 @@ impl<'a> Prepared<'a> {
         Ok(Self { snapshot, mode: request.mode, question })
     }
 
+    /// Which pairs are within a distance?
+    ///
+    /// # Errors
+    /// A distance that is negative or not finite, and what the question about states or subjects refuses.
+    pub fn clearance(snapshot: &'a Snapshot, request: &'a Clearance) -> Result<Self, Refused> {
+        length("within", request.within)?;
+        let (question, mode) = match &request.subjects {
+            ClearanceOf::States(states) => {
+                (Question::States(States::clearance(snapshot, states, request.within)?), states.mode)
+            }
+            ClearanceOf::Subjects(pairs) => {
+                (Question::Pairs(Pairs::clearance(snapshot, pairs, request.within)?), pairs.mode)
+            }
+        };
+        Ok(Self { snapshot, mode, question })
+    }
+
+    /// Number of items that a thread should take at a time, at least: fewer cost more in handing over than they gain.
+    #[must_use]
+    pub fn smallest_part(&self) -> usize {
+        match &self.question {
+            Question::States(_) | Question::Pairs(_) => 8,
+            // A motion is the work of tens of states.
+            Question::Motions(_) => 1,
+        }
+    }
+
     /// Number of items.
     #[must_use]
     pub fn len(&self) -> usize {
         match &self.question {
             Question::States(states) => states.len(),
+            Question::Motions(motions) => motions.len(),
             Question::Pairs(pairs) => pairs.len(),
         }
     }
@@ -80,6 +121,7 @@ impl<'a> Prepared<'a> {
                 let mut scratch = states.scratch();
                 self.run_items(range, stop, |i| states.answer(i, &mut scratch, stop))
             }
+            Question::Motions(motions) => self.run_items(range, stop, |i| motions.answer(i, stop)),
             Question::Pairs(pairs) => self.run_items(range, stop, |i| pairs.answer(i, stop)),
         }
     }

@@ -31,9 +31,16 @@ impl<'a> Sieve<'a> {
         if let Some(body) = filter.ignore.iter().find(|id| snapshot.body(**id).is_none()) {
             return Err(not_found("body", body.to_string()));
         }
+        Ok(Self::unchecked(context))
+    }
+
+    /// Of a context that was checked against an earlier revision: a group or body of the filter that is not there any more
+    /// lets nothing through or keeps nothing out.
+    pub fn unchecked(context: &'a Context) -> Self {
+        let filter = &context.filter;
         let mut ignore = filter.ignore.clone();
         ignore.sort_unstable();
-        Ok(Self { groups: &filter.groups, ignore, disregard_allowed: filter.disregard_allowed_collisions })
+        Self { groups: &filter.groups, ignore, disregard_allowed: filter.disregard_allowed_collisions }
     }
 
     /// Whether the body counts at all.
@@ -49,7 +56,7 @@ impl<'a> Sieve<'a> {
 }
 
 /// A finite number that is not negative.
-fn length(field: &str, value: f64) -> Result<(), Refused> {
+pub(super) fn length(field: &str, value: f64) -> Result<(), Refused> {
     let problem = match value {
         v if !v.is_finite() => "is not finite".to_owned(),
         v if v < 0.0 => format!("is negative: {v}"),

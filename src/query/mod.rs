@@ -2,13 +2,45 @@
 
 mod answer;
 mod batch;
+mod cast_answer;
+mod cast_request;
+mod casts;
+mod changed_pairs;
+mod contact_tracker;
+mod contacts;
 mod context;
+mod item_batch;
+mod met;
+mod motion_course;
+mod motion_measure;
+mod motions;
+mod nearest_bodies;
+mod opponents;
+mod overlap;
 mod pairs;
+mod rays;
 mod request;
+mod robot_parts;
 mod search;
 mod states;
 mod verdict;
 
-pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
-pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+pub use cast_answer::{Answers, CastHit, CastItem, CastVerdict, Grazed, NearestItem, OverlapItem, Overlapping};
+pub use cast_request::{
+    CastMode, CastRays, CastShapes, CheckMovingPairs, DEFAULT_RESOLUTION, Moved, Mover, NearestBodies, Overlap, Region,
+    Way,
+};
+pub use casts::{Casts, MovingPairs};
+pub use contact_tracker::ContactTracker;
+pub use contacts::{
+    ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
+};
+pub use item_batch::ItemBatch;
+pub use nearest_bodies::Neighbours;
+pub use overlap::Overlaps;
+pub use rays::Rays;
+pub use request::{
+    CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Filter, Find, Mode, Motions, PairQuery, Subject, Wants,
+};

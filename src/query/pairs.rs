@@ -13,6 +13,10 @@ pub(super) struct Pairs<'a> {
     request: &'a PairQuery,
     wants: Wants,
     sieve: Sieve<'a>,
+    /// Margins do not count: neither the question's nor the scene's.
+    touching: bool,
+    /// Every pair within this is listed, metres.
+    within: Option<f64>,
 }
 
 impl<'a> Pairs<'a> {
@@ -24,9 +28,42 @@ impl<'a> Pairs<'a> {
         Self::new(snapshot, request, Wants { distance: true, ..request.context.wants })
     }
 
+    /// Every pair that is not proved farther than `within` metres.
+    pub fn clearance(snapshot: &'a Snapshot, request: &'a PairQuery, within: f64) -> Result<Self, Refused> {
+        let wants = Wants { distance: true, pairs: true, ..request.context.wants };
+        Ok(Self { within: Some(within), ..Self::new(snapshot, request, wants)? })
+    }
+
     fn new(snapshot: &'a Snapshot, request: &'a PairQuery, wants: Wants) -> Result<Self, Refused> {
         let sieve = Sieve::new(snapshot, &request.context)?;
-        Ok(Self { snapshot, request, wants, sieve })
+        request.items.iter().enumerate().try_for_each(|(item, subject)| check_revision(snapshot, item, subject))?;
+        Ok(Self { snapshot, request, wants, sieve, touching: false, within: None })
+    }
+
+    /// For contacts that are tracked: what the filter names has to be there at the `first` revision only.
+    pub(super) fn tracked(
+        snapshot: &'a Snapshot,
+        request: &'a PairQuery,
+        touching: bool,
+        first: bool,
+    ) -> Result<Self, Refused> {
+        let context = &request.context;
+        let sieve = if first { Sieve::new(snapshot, context)? } else { Sieve::unchecked(context) };
+        Ok(Self { snapshot, request, wants: context.wants, sieve, touching, within: None })
+    }
+
+    /// What is asked of every pair.
+    pub(super) fn plan<'s>(&'s self, stop: &'s dyn Fn() -> bool) -> Plan<'s> {
+        let largest = if self.touching { 0.0 } else { self.snapshot.largest_margin() };
+        Plan::new(&self.request.context, self.wants, largest, stop).listing(self.within)
+    }
+
+    pub(super) fn snapshot(&self) -> &'a Snapshot {
+        self.snapshot
+    }
+
+    pub(super) fn passes(&self, body: &Body) -> bool {
+        self.sieve.passes(body)
     }
 
     pub fn len(&self) -> usize {
@@ -34,10 +71,14 @@ impl<'a> Pairs<'a> {
     }
 
     pub fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> ItemAnswer {
-        let plan = Plan::new(&self.request.context, self.wants, self.snapshot.largest_margin(), stop);
+        let plan = self.plan(stop);
         let mut search = Search::new(&plan);
         match &self.request.items[item] {
             Subject::All => self.everything(&mut search),
+            Subject::ChangedSince(revision) => match self.snapshot.changes_since(*revision) {
+                Ok(changes) => self.changed(&changes, &mut search),
+                Err(not_kept) => return ItemAnswer::invalid(format!("items[{item}].changed_since: {not_kept}")),
+            },
             Subject::Body(id) => match self.snapshot.body(*id) {
                 Some(body) => self.body(body, &mut search),
                 None => {
@@ -72,7 +113,7 @@ impl<'a> Pairs<'a> {
     }
 
     /// Every body against those with higher ids, so that each pair comes once.
-    fn everything(&self, search: &mut Search) {
+    pub(super) fn everything(&self, search: &mut Search) {
         for body in self.snapshot.bodies().filter(|b| self.sieve.passes(b)) {
             if search.is_settled() {
                 return;
@@ -103,7 +144,7 @@ impl<'a> Pairs<'a> {
     }
 
     /// Offers the bodies that `margin` gives a margin, as far as the search reaches.
-    fn against_bodies(
+    pub(super) fn against_bodies(
         &self,
         search: &mut Search,
         one: &Party,
@@ -112,7 +153,7 @@ impl<'a> Pairs<'a> {
     ) {
         let snapshot = self.snapshot;
         let mut offer = |search: &mut Search, id: BodyId| {
-            let body = snapshot.body(id).expect("the tree holds bodies of the snapshot");
+            let body = snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
             if self.sieve.passes(body)
                 && let Some(margin) = margin(body)
             {
@@ -125,7 +166,7 @@ impl<'a> Pairs<'a> {
         match bounds {
             Some(bounds) => {
                 let reach = search.reach();
-                let stats = snapshot.tree().nearest(&bounds, reach, |id, _| {
+                let stats = snapshot.broad_phase().nearest(&bounds, reach, |id, _| {
                     offer(search, BodyId(id));
                     search.reach()
                 });
@@ -139,20 +180,34 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    fn admits(&self, one: &Body, other: &Body) -> bool {
+    pub(super) fn admits(&self, one: &Body, other: &Body) -> bool {
         if self.sieve.disregards_allowed_collisions() {
             return other.enabled && one.meets(other.layers, other.mask);
         }
         self.snapshot.admits(one, other)
     }
 
-    fn margin(&self, one: &Body, other: &Body) -> f64 {
+    pub(super) fn margin(&self, one: &Body, other: &Body) -> f64 {
+        if self.touching {
+            return 0.0;
+        }
         self.snapshot.margin(one.member(), other.member()).unwrap_or(self.request.context.margin)
     }
 }
 
-fn party(body: &Body) -> Party<'_> {
+pub(super) fn party(body: &Body) -> Party<'_> {
     Party { side: Side::Body { id: body.id, subshape: 0 }, shape: &body.shape, at: &body.placement }
+}
+
+/// Whether the snapshot knows what changed since the revision that a subject names, if it names one.
+fn check_revision(snapshot: &Snapshot, item: usize, subject: &Subject) -> Result<(), Refused> {
+    let Subject::ChangedSince(asked) = *subject else { return Ok(()) };
+    let (oldest, latest) = (snapshot.oldest_change(), snapshot.revision());
+    if asked > latest {
+        let problem = format!("revision {asked} comes after revision {latest}, which is asked");
+        return Err(Refused::Invalid { field: format!("items[{item}].changed_since"), problem });
+    }
+    if asked < oldest { Err(Refused::Gone { asked, oldest }) } else { Ok(()) }
 }
 
 /// What was found, as the answer to an item.

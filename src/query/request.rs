@@ -2,7 +2,7 @@
 
 use crate::geometry::{Pose, Shape};
 use crate::narrow_phase::{Accuracy, Solver};
-use crate::scene::BodyId;
+use crate::scene::{BodyId, Revision};
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -104,11 +104,66 @@ pub struct CheckStates {
     pub context: Context,
 }
 
+/// Which position vectors are the ends of a motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Motions {
+    /// Start and goal of each, one after the other: start, goal, start, goal.
+    #[default]
+    Edges,
+    /// Waypoints of a path: each motion starts where the one before it ends.
+    Path,
+}
+
+/// What is wanted of a motion that collides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Find {
+    /// The first contact, in a bracket as narrow as the resolution: all before it is proved free.
+    #[default]
+    FirstContact,
+    /// That there is one; the bracket is as wide as it was when the first contact was met.
+    AnyContact,
+}
+
+/// Is the robot free all along these motions?
+#[derive(Clone, Debug, PartialEq)]
+pub struct CheckMotions {
+    /// The robot's name in the scene.
+    pub robot: String,
+    /// Joint positions, vector after vector, each in the order of the robot's joints; radians or metres. A motion is the straight
+    /// line between two of them: `start + t (goal - start)` in every number; joints without limits are not wrapped.
+    pub positions: Vec<f64>,
+    /// How they make motions.
+    pub motions: Motions,
+    /// All motions or up to the first that is blocked.
+    pub mode: Mode,
+    /// How much is wanted of a contact.
+    pub find: Find,
+    /// A pair whose parts move by no more than this between two states, and that is not proved free between them, is
+    /// left undecided there; metres, positive.
+    pub resolution: f64,
+    /// States that are looked at for one motion, at most; then the rest is undecided.
+    pub max_states: usize,
+    /// The rest.
+    pub context: Context,
+}
+
+impl CheckMotions {
+    /// Metres.
+    pub const DEFAULT_RESOLUTION: f64 = 1e-4;
+
+    /// States for one motion.
+    pub const DEFAULT_MAX_STATES: usize = 4096;
+}
+
 /// What is held against the scene.
 #[derive(Clone, Debug)]
 pub enum Subject {
     /// Every pair of bodies of the scene.
     All,
+    /// Every pair of bodies that changed after this revision: a side of it was added, moved, reshaped, put in other
+    /// layers or groups, or enabled, or an entry for pairs that speaks of it was made, replaced or taken back. Each pair
+    /// once.
+    ChangedSince(Revision),
     /// One body against the others.
     Body(BodyId),
     /// A shape that is not in the scene, placed in the world, against all bodies.
@@ -118,6 +173,24 @@ pub enum Subject {
         /// Its frame in the world.
         pose: Pose,
     },
+}
+
+/// Which pairs are within a distance? Every one of them with its bracket, where the other questions want the nearest.
+#[derive(Clone, Debug)]
+pub struct Clearance {
+    /// What is held against the scene; the context's want `distance` or more is added, `cut_off` does not count.
+    pub subjects: ClearanceOf,
+    /// Metres, not negative: pairs proved farther apart than this are left out.
+    pub within: f64,
+}
+
+/// Whose clearance.
+#[derive(Clone, Debug)]
+pub enum ClearanceOf {
+    /// A robot's in some states, against itself and the scene.
+    States(CheckStates),
+    /// Bodies' and bare shapes'.
+    Subjects(PairQuery),
 }
 
 /// What touches (with `Collide`), or how far is the nearest (with `Distance`)?

@@ -22,13 +22,20 @@ pub(super) struct Plan<'a> {
     pub wants: Wants,
     /// No pair has a larger margin; metres.
     pub largest_margin: f64,
+    /// Every pair that is not proved farther than this is measured and listed; metres.
+    within: Option<f64>,
     pub stop: &'a dyn Fn() -> bool,
 }
 
 impl<'a> Plan<'a> {
     pub fn new(context: &'a Context, wants: Wants, largest_scene_margin: f64, stop: &'a dyn Fn() -> bool) -> Self {
         let largest_margin = context.margin.max(largest_scene_margin);
-        Self { context, wants: wants.closed(), largest_margin, stop }
+        Self { context, wants: wants.closed(), largest_margin, within: None, stop }
+    }
+
+    /// The same, with every pair listed that is not proved farther than `within` metres, if that is said.
+    pub fn listing(self, within: Option<f64>) -> Self {
+        Self { within, ..self }
     }
 
     fn depth(&self) -> Depth {
@@ -40,7 +47,8 @@ impl<'a> Plan<'a> {
     }
 
     fn cut_off(&self) -> f64 {
-        if self.wants.distance { self.context.cut_off.unwrap_or(f64::INFINITY) } else { 0.0 }
+        let asked = if self.wants.distance { self.context.cut_off.unwrap_or(f64::INFINITY) } else { 0.0 };
+        self.within.unwrap_or(asked)
     }
 }
 
@@ -97,7 +105,7 @@ impl<'a> Search<'a> {
         if self.is_settled() {
             return -1.0;
         }
-        let for_distance = self.plan.cut_off().min(self.bracket.upper).max(0.0);
+        let for_distance = self.matters_up_to().max(0.0);
         if self.margins_matter() { for_distance.max(self.plan.largest_margin) } else { for_distance }
     }
 
@@ -117,14 +125,19 @@ impl<'a> Search<'a> {
         if self.is_settled() {
             return;
         }
-        let matters_up_to = self.plan.cut_off().min(self.bracket.upper);
+        let matters_up_to = self.matters_up_to();
         let goal = Goal {
             depth: self.plan.depth(),
             accuracy: self.plan.context.accuracy,
             solver: self.plan.context.solver,
             margin,
-            // Beyond its own margin a pair needs no more than the proof that it is beyond.
-            cut_off: if self.margins_matter() { matters_up_to.max(margin) } else { matters_up_to },
+            // Beyond its own margin a pair needs no more than the proof that it is beyond. A cut-off that is not positive
+            // would say that the pair's own contact is of no interest.
+            cut_off: if self.margins_matter() {
+                matters_up_to.max(margin).max(f64::MIN_POSITIVE)
+            } else {
+                matters_up_to
+            },
             stop: self.plan.stop,
         };
         match separation(a.shape, b.shape, a.at, b.at, &goal) {
@@ -132,6 +145,14 @@ impl<'a> Search<'a> {
             // A pair of two unbounded shapes has no distance, and is left out.
             Err(NoSeparation::Unbounded { .. }) => (),
             Err(NoSeparation::Unclaimed(unclaimed)) => self.unclaimed = Some(unclaimed),
+        }
+    }
+
+    /// What is proved farther than this needs no distance, metres.
+    fn matters_up_to(&self) -> f64 {
+        match self.plan.within {
+            Some(within) => within,
+            None => self.plan.cut_off().min(self.bracket.upper),
         }
     }
 
@@ -162,7 +183,11 @@ impl<'a> Search<'a> {
         };
         self.bracket = union(self.bracket, found.bracket);
         self.verdict = self.verdict.and(verdict);
-        if self.plan.wants.pairs && verdict != Verdict::Free {
+        let listed = match self.plan.within {
+            Some(within) => found.bracket.lower <= within,
+            None => self.plan.wants.pairs && verdict != Verdict::Free,
+        };
+        if listed {
             self.list(answer.clone());
         }
         let place = if self.plan.wants.distance { &mut self.nearest } else { &mut self.decider };

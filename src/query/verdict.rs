@@ -49,10 +49,11 @@ impl Verdict {
             Self::Collision => 1,
             Self::Indeterminate(Indeterminacy::TimeLimit) => 2,
             Self::Indeterminate(Indeterminacy::IterationLimit) => 3,
-            Self::Indeterminate(Indeterminacy::Rounding) => 4,
-            Self::NotRun => 5,
-            Self::Margin => 6,
-            Self::Free => 7,
+            Self::Indeterminate(Indeterminacy::Resolution) => 4,
+            Self::Indeterminate(Indeterminacy::Rounding) => 5,
+            Self::NotRun => 6,
+            Self::Margin => 7,
+            Self::Free => 8,
         }
     }
 }

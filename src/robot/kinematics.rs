@@ -29,22 +29,23 @@ pub(super) struct Kinematics {
     /// How each link is reached; none for the root. By link.
     pub parents: Vec<Option<Parent>>,
     root: u32,
-    steps: Vec<Step>,
+    /// Each link after the one it hangs from.
+    pub steps: Vec<Step>,
     width: usize,
 }
 
 /// How one link's pose follows from its parent's.
 #[derive(Clone, Debug)]
-struct Step {
-    link: u32,
-    parent: u32,
+pub(super) struct Step {
+    pub link: u32,
+    pub parent: u32,
     /// The joint's frame in the parent link's, at position zero.
-    origin: Pose,
-    motion: Motion,
+    pub origin: Pose,
+    pub motion: Motion,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Motion {
+pub(super) enum Motion {
     Fixed,
     /// About a unit vector of the joint's frame.
     Turn {
@@ -65,14 +66,14 @@ enum Motion {
 /// A joint's position as a function of the position vector: `multiplier * positions[index] + offset`. For joints that
 /// mimic nothing that is the number itself, exactly.
 #[derive(Clone, Copy, Debug)]
-struct Coordinate {
-    index: usize,
-    multiplier: f64,
-    offset: f64,
+pub(super) struct Coordinate {
+    pub index: usize,
+    pub multiplier: f64,
+    pub offset: f64,
 }
 
 impl Coordinate {
-    fn value(self, positions: &[f64]) -> f64 {
+    pub fn value(self, positions: &[f64]) -> f64 {
         self.multiplier * positions[self.index] + self.offset
     }
 }

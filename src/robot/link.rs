@@ -7,7 +7,7 @@ use super::RobotError;
 use super::options::{LinkOptions, MeshUse, ModelOptions};
 use super::urdf::{Geometry, Urdf, collision_item};
 use crate::geometry::mesh_file::{self, MeshFormat, MeshSoup};
-use crate::geometry::{InvalidShape, Pose, Shape, TriangleMesh, Vec3};
+use crate::geometry::{Ball, InvalidShape, Pose, Shape, TriangleMesh, Vec3};
 
 /// A rigid part of a robot.
 #[derive(Clone, Debug)]
@@ -25,6 +25,15 @@ pub struct LinkShape {
     pub pose: Pose,
     /// Scale and padding applied. Shared with other links that use the same mesh in the same way.
     pub shape: Arc<Shape>,
+    /// Holds the shape; in the shape's frame, metres.
+    pub ball: Ball,
+}
+
+impl LinkShape {
+    fn new(pose: Pose, shape: Arc<Shape>) -> Self {
+        let ball = Ball::around(&shape).expect("what a URDF can say has bounds");
+        Self { pose, shape, ball }
+    }
 }
 
 /// A mesh that is wanted.
@@ -52,7 +61,7 @@ pub(super) fn build(urdf: &Urdf, options: &ModelOptions, resolver: &mut MeshReso
                 Geometry::Mesh { filename, scale } => {
                     let request = MeshRequest { filename, link: &link.name };
                     let shape = meshes.shape(&request, *scale, &chosen, &item)?;
-                    shapes.push(LinkShape { pose: collision.origin, shape });
+                    shapes.push(LinkShape::new(collision.origin, shape));
                     continue;
                 }
                 Geometry::Box { size } => Shape::cuboid(0.5 * size),
@@ -61,7 +70,7 @@ pub(super) fn build(urdf: &Urdf, options: &ModelOptions, resolver: &mut MeshReso
                 Geometry::Capsule { radius, length } => Shape::capsule(*radius, 0.5 * length),
             };
             let shape = inflated(primitive, &chosen).map_err(|source| RobotError::Shape { item, source })?;
-            shapes.push(LinkShape { pose: collision.origin, shape: Arc::new(shape) });
+            shapes.push(LinkShape::new(collision.origin, Arc::new(shape)));
         }
         links.push(Link { name: link.name.clone(), shapes });
     }

@@ -136,6 +136,20 @@ impl RobotModel {
         self.kinematics.link_poses(positions, base, poses);
     }
 
+    /// Name of the joint that a number of a position vector belongs to.
+    ///
+    /// # Panics
+    /// On an index beyond the vector.
+    #[must_use]
+    pub fn joint_of(&self, index: usize) -> &str {
+        let after = self.joints.partition_point(|joint| joint.first <= index);
+        &self.joints[after - 1].name
+    }
+
+    pub(super) fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
     /// Pairs of links to look at for self-collision, each with the lower index first, sorted.
     #[must_use]
     pub fn self_pairs(&self) -> &[(u32, u32)] {

@@ -36,7 +36,7 @@ pub struct Body {
     pub enabled: bool,
     /// Keys of the groups, in the order of the numbers.
     pub(super) group_keys: Arc<[PartyKey]>,
-    /// Its entry in the tree: of an enabled body with bounds.
+    /// Its entry in the broad phase: of an enabled body with bounds.
     pub(super) proxy: Option<ProxyId>,
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::change::Fault;
 use super::edit::{BodyRef, NewBody};
 use super::party::PartyKey;
-use super::{Body, BodyId, Reason, Snapshot};
+use super::{Body, BodyId, ChangeKinds, Reason, Snapshot};
 use crate::geometry::{Pose, Shape};
 use crate::limits::{LimitExceeded, Limits};
 
@@ -39,6 +39,7 @@ impl Snapshot {
             proxy: None,
         };
         self.put(body);
+        self.changes.body(id, ChangeKinds::ADDED);
         Ok(id)
     }
 
@@ -49,11 +50,16 @@ impl Snapshot {
         self.names.remove_mut(&body.name);
         self.forget_entries_of(PartyKey::body(body.id));
         self.leave_groups(&body);
+        self.changes.body(body.id, ChangeKinds::REMOVED);
         Ok(())
     }
 
     pub(super) fn move_body(&mut self, body: &BodyRef, pose: &Pose) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
+        if same_bits(&body.pose, pose) {
+            return Ok(());
+        }
+        self.changes.body(body.id, ChangeKinds::MOVED);
         let placement = pose.placement();
         let bounds = body.shape.placed_bounds(&placement);
         self.put(Body { pose: *pose, placement, bounds, ..Body::clone(&body) });
@@ -69,6 +75,7 @@ impl Snapshot {
     ) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
         let shape = inflated(shape, scale, padding)?;
+        self.changes.body(body.id, ChangeKinds::RESHAPED);
         let bounds = shape.placed_bounds(&body.placement);
         self.put(Body { shape, scale, padding, bounds, ..Body::clone(&body) });
         Ok(())
@@ -77,6 +84,9 @@ impl Snapshot {
     pub(super) fn set_groups(&mut self, body: &BodyRef, groups: &[String], limits: &Limits) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
         let (groups, group_keys) = self.join_groups(groups, limits)?;
+        if group_keys != body.group_keys {
+            self.changes.body(body.id, ChangeKinds::GROUPS);
+        }
         self.leave_groups(&body);
         self.put(Body { groups, group_keys, ..Body::clone(&body) });
         Ok(())
@@ -84,12 +94,18 @@ impl Snapshot {
 
     pub(super) fn set_layers(&mut self, body: &BodyRef, layers: u32, mask: u32) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
+        if (layers, mask) != (body.layers, body.mask) {
+            self.changes.body(body.id, ChangeKinds::LAYERS);
+        }
         self.put(Body { layers, mask, ..Body::clone(&body) });
         Ok(())
     }
 
     pub(super) fn set_enabled(&mut self, body: &BodyRef, enabled: bool) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
+        if enabled != body.enabled {
+            self.changes.body(body.id, ChangeKinds::ENABLED);
+        }
         self.put(Body { enabled, ..Body::clone(&body) });
         Ok(())
     }
@@ -125,10 +141,10 @@ impl Snapshot {
     /// Puts a body in the place of the one with its id, and lists it where queries find it.
     fn put(&mut self, mut body: Body) {
         match (body.proxy, body.bounds.filter(|_| body.enabled)) {
-            (Some(proxy), Some(bounds)) => drop(self.tree.move_to(proxy, bounds)),
+            (Some(proxy), Some(bounds)) => drop(self.broad_phase.move_to(proxy, bounds)),
             (None, Some(bounds)) => {
                 self.unlist(&body);
-                body.proxy = Some(self.tree.insert(bounds, body.id.0));
+                body.proxy = Some(self.broad_phase.insert(bounds, body.id.0));
             }
             (_, None) => {
                 self.unlist(&body);
@@ -141,13 +157,13 @@ impl Snapshot {
                 unbounded.insert(place, body.id);
             }
         }
-        self.bodies.insert(body.id.0, Arc::new(body));
+        self.store(body);
     }
 
-    /// Takes a body out of the tree and the list of those without bounds.
+    /// Takes a body out of the broad phase and the list of those without bounds.
     fn unlist(&mut self, body: &Body) {
         if let Some(proxy) = body.proxy {
-            self.tree.remove(proxy);
+            self.broad_phase.remove(proxy);
         }
         if let Ok(place) = self.unbounded.binary_search(&body.id) {
             Arc::make_mut(&mut self.unbounded).remove(place);
@@ -204,6 +220,15 @@ fn inflated(shape: &Arc<Shape>, scale: f64, padding: f64) -> Result<Arc<Shape>, 
         shape = Arc::new(shape.swept(padding).map_err(|invalid| Reason::Shape(invalid).of("padding"))?);
     }
     Ok(shape)
+}
+
+/// Whether no question could tell the poses apart: zeros of different signs may show in an answer.
+pub(super) fn same_bits(one: &Pose, two: &Pose) -> bool {
+    let bits = |pose: &Pose| {
+        let (t, q) = (pose.translation(), pose.rotation());
+        [t.x, t.y, t.z, q.w, q.x, q.y, q.z].map(f64::to_bits)
+    };
+    bits(one) == bits(two)
 }
 
 /// Checks a length that a caller gave, metres.

@@ -43,11 +43,13 @@ impl Snapshot {
     /// Works out what is kept beside the edited content, where the edits touched what it depends on.
     pub(super) fn settle(&mut self, before: &Self, revision: Revision) {
         self.revision = revision;
+        self.broad_phase.settle();
         if !self.allowed.is_as_in(&before.allowed) {
             self.settle_self_pairs();
         }
-        if !self.margins.is_as_in(&before.margins) {
+        if self.largest_margin_gone {
             self.largest_margin = self.margins.values().fold(0.0, f64::max);
+            self.largest_margin_gone = false;
         }
     }
 }

@@ -29,6 +29,16 @@ impl Groups {
         Self { keys: HashTrieMapSync::new_sync(), groups: IdMap::new(), next_number: 0 }
     }
 
+    /// Bytes of all nodes, those that other versions hold too included.
+    pub(super) fn memory(&self) -> usize {
+        self.groups.memory()
+    }
+
+    /// Bytes of the nodes that no other version holds.
+    pub(super) fn own_memory(&self) -> usize {
+        self.groups.own_memory()
+    }
+
     pub(super) fn len(&self) -> usize {
         self.groups.len()
     }

@@ -1,12 +1,14 @@
 //! How is the content of a scene kept in many versions? By a map from ids that clones share.
 //!
-//! A radix tree of 64-way nodes: a clone is one reference count, and a change copies the nodes on the way to one id,
-//! three for the first 262 144 ids. Nodes without entries are dropped: ids that are gone for good cost nothing.
+//! A radix tree of 16-way nodes: a clone is one reference count, and a change copies the nodes on the way to one id,
+//! five for the first million ids. Wider nodes would be fewer and found sooner, but a copy has to count a reference to
+//! everything the node points to, which is what an edit of a few scattered ids spends its time on. Nodes without entries
+//! are dropped: ids that are gone for good cost nothing.
 
 use std::array;
 use std::sync::Arc;
 
-const BITS: u32 = 6;
+const BITS: u32 = 4;
 const FANOUT: usize = 1 << BITS;
 
 /// A map from `u64` to `T`, in the order of the keys.
@@ -92,7 +94,29 @@ impl<T: Clone> IdMap<T> {
 
     /// The values in the order of their keys.
     pub(super) fn values(&self) -> impl Iterator<Item = &T> {
-        let mut path: Vec<(&Node<T>, usize)> = self.root.iter().map(|root| (&**root, 0)).collect();
+        self.values_from(0)
+    }
+
+    /// The values of the keys from `first` on, in their order.
+    pub(super) fn values_from(&self, first: u64) -> impl Iterator<Item = &T> {
+        let mut path: Vec<(&Node<T>, usize)> = Vec::new();
+        let mut node = self.root.as_deref().filter(|_| self.reaches(first));
+        let mut level = self.levels;
+        while let Some(inner) = node {
+            let digit = digit(first, level);
+            node = match inner {
+                // The child that leads to `first` is entered here, so the walk goes on after it.
+                Node::Branch(children) => {
+                    path.push((inner, digit + 1));
+                    children[digit].as_deref()
+                }
+                Node::Leaf(_) => {
+                    path.push((inner, digit));
+                    None
+                }
+            };
+            level = level.saturating_sub(1);
+        }
         std::iter::from_fn(move || {
             loop {
                 let (node, next) = path.pop()?;
@@ -107,6 +131,16 @@ impl<T: Clone> IdMap<T> {
                 }
             }
         })
+    }
+
+    /// Bytes of all nodes, those that other versions hold too included. What values point to is not in it.
+    pub(super) fn memory(&self) -> usize {
+        self.root.as_ref().map_or(0, |root| Node::memory(root, &|_| true))
+    }
+
+    /// Bytes of the nodes that no other version holds; it looks at no others.
+    pub(super) fn own_memory(&self) -> usize {
+        self.root.as_ref().map_or(0, |root| Node::memory(root, &|node| Arc::strong_count(node) == 1))
     }
 
     /// Whether the tree is tall enough for the key.
@@ -125,6 +159,17 @@ impl<T: Clone> Node<T> {
             Self::Branch(children) => children.iter().all(Option::is_none),
             Self::Leaf(values) => values.iter().all(Option::is_none),
         }
+    }
+
+    fn memory(node: &Arc<Self>, counts: &impl Fn(&Arc<Self>) -> bool) -> usize {
+        if !counts(node) {
+            return 0;
+        }
+        let below = match &**node {
+            Self::Branch(children) => children.iter().flatten().map(|child| Self::memory(child, counts)).sum(),
+            Self::Leaf(_) => 0,
+        };
+        below + size_of::<Self>() + 2 * size_of::<usize>()
     }
 
     fn take(&mut self, key: u64, level: u32) -> Option<T> {
@@ -202,6 +247,9 @@ mod tests {
             for (map, expected) in versions {
                 prop_assert_eq!(map.len(), expected.len());
                 prop_assert!(map.values().eq(expected.values()));
+                for first in [0, 1, 63, 64, 100, 4500, u64::MAX] {
+                    prop_assert!(map.values_from(first).eq(expected.range(first..).map(|(_, value)| value)));
+                }
             }
         }
     }

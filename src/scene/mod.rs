@@ -6,10 +6,13 @@
 mod body;
 mod body_changes;
 mod change;
+mod change_log;
 mod edit;
 mod groups;
 mod id;
 mod id_map;
+mod memory;
+mod options;
 mod pair_changes;
 mod pair_table;
 mod party;
@@ -25,11 +28,16 @@ mod validate;
 mod tests;
 
 pub use body::Body;
+pub use change_log::{BodyChange, ChangeKinds, Changes, RobotChange};
 pub use edit::{BodyRef, Edit, NewBody};
 pub use id::{BodyId, Epoch, Revision};
+pub use memory::Memory;
+pub use options::SceneOptions;
 pub use party::{Member, Party};
 pub use refusal::{NotKept, Reason, Refusal};
 pub use robot_in_scene::RobotInScene;
 pub use scene::{Applied, Scene};
 pub use snapshot::Snapshot;
 pub use validate::SnapshotDefect;
+
+pub use crate::broad_phase::{BroadPhaseHealth, BroadPhaseKind};

@@ -15,8 +15,11 @@ impl Snapshot {
         limits: &Limits,
     ) -> Result<(), Fault> {
         let (a, b) = self.pair_of_keys(a, b, limits)?;
-        let existed = self.allowed.get(a, b).is_some();
-        self.count_entry(existed, allowed.is_some(), (a, b), limits)?;
+        let before = self.allowed.get(a, b);
+        self.count_entry(before.is_some(), allowed.is_some(), (a, b), limits)?;
+        if before != allowed {
+            self.changes.entry(a, b);
+        }
         self.allowed.set(a, b, allowed);
         Ok(())
     }
@@ -32,16 +35,25 @@ impl Snapshot {
         if let Some(margin) = margin {
             check_distance(margin, "margin")?;
         }
-        let existed = self.margins.get(a, b).is_some();
-        self.count_entry(existed, margin.is_some(), (a, b), limits)?;
+        let before = self.margins.get(a, b);
+        self.count_entry(before.is_some(), margin.is_some(), (a, b), limits)?;
+        if before != margin {
+            self.changes.entry(a, b);
+        }
         self.margins.set(a, b, margin);
+        // Only where the largest went are all entries looked at again.
+        self.largest_margin = self.largest_margin.max(margin.unwrap_or(0.0));
+        self.largest_margin_gone |=
+            before.is_some_and(|before| before >= self.largest_margin && margin != Some(before));
         Ok(())
     }
 
     /// Takes back all entries that name a party which leaves the scene.
     pub(super) fn forget_entries_of(&mut self, party: PartyKey) {
         let mut others = self.allowed.forget(party);
-        others.extend(self.margins.forget(party));
+        let with_margins = self.margins.forget(party);
+        self.largest_margin_gone |= !with_margins.is_empty();
+        others.extend(with_margins);
         others.into_iter().filter(|other| other.is_group()).for_each(|other| self.groups.drop_use(other));
     }
 

@@ -44,6 +44,17 @@ impl<V: Copy> PairTable<V> {
         Self { rows: IdMap::new(), cautious, entries: 0, wide_entries: 0, changes: 0 }
     }
 
+    /// Bytes of all rows, those that other versions hold too included.
+    pub(super) fn memory(&self) -> usize {
+        let row = |row: &Arc<Row<V>>| size_of::<Row<V>>() + row.entries.len() * size_of::<(PartyKey, V)>();
+        self.rows.memory() + self.rows.values().map(row).sum::<usize>()
+    }
+
+    /// Bytes of the nodes that no other version holds; rows are left out.
+    pub(super) fn own_memory(&self) -> usize {
+        self.rows.own_memory()
+    }
+
     pub(super) fn len(&self) -> usize {
         self.entries
     }
@@ -150,7 +161,7 @@ fn value_in<V: Copy>(row: &[(PartyKey, V)], party: PartyKey) -> Option<V> {
 
 /// The parties that speak of a body or link, each with how far it is from naming it alone: 0 itself, 1 its groups or
 /// its robot, 2 everything.
-fn parties_of(member: Member<'_>) -> impl Iterator<Item = (PartyKey, usize)> {
+pub(super) fn parties_of(member: Member<'_>) -> impl Iterator<Item = (PartyKey, usize)> {
     let many = member.many.iter().map(|party| (*party, 1));
     std::iter::once((member.one, 0)).chain(many).chain(std::iter::once((PartyKey::EVERYTHING, 2)))
 }

@@ -57,6 +57,16 @@ impl PartyKey {
         matches!(self.0 & 7, 1 | 4)
     }
 
+    /// A link or a robot as a whole: no entry that names it speaks of two bodies.
+    pub(super) fn is_of_robot(self) -> bool {
+        matches!(self.0 & 7, 3 | 4)
+    }
+
+    /// The body it stands for, if it is one.
+    pub(super) fn as_body(self) -> Option<BodyId> {
+        (self.0 & 7 == 1).then_some(BodyId(self.0 >> 3))
+    }
+
     /// A group.
     pub(super) fn is_group(self) -> bool {
         self.0 & 7 == 2

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::body_changes::same_bits;
 use super::change::Fault;
-use super::{Reason, RobotInScene, Snapshot};
+use super::{ChangeKinds, Reason, RobotInScene, Snapshot};
 use crate::geometry::Pose;
 use crate::limits::{LimitExceeded, Limits};
 use crate::robot::RobotModel;
@@ -25,6 +26,7 @@ impl Snapshot {
         let mut robot = RobotInScene::new(name.into(), Arc::clone(model), *base, self.next_link);
         robot.self_pairs = robot.self_pairs_under(&self.allowed);
         self.next_link += model.links().len() as u64;
+        self.changes.robot(&robot.name, ChangeKinds::ADDED);
         let place = self.robots.partition_point(|other| *other.name < *name);
         Arc::make_mut(&mut self.robots).insert(place, Arc::new(robot));
         Ok(())
@@ -32,13 +34,18 @@ impl Snapshot {
 
     pub(super) fn move_robot(&mut self, name: &str, base: &Pose) -> Result<(), Fault> {
         let place = self.place_of_robot(name, "robot")?;
-        Arc::make_mut(&mut Arc::make_mut(&mut self.robots)[place]).base = *base;
+        let robot = &self.robots[place];
+        if !same_bits(&robot.base, base) {
+            self.changes.robot(&robot.name, ChangeKinds::MOVED);
+            Arc::make_mut(&mut Arc::make_mut(&mut self.robots)[place]).base = *base;
+        }
         Ok(())
     }
 
     pub(super) fn remove_robot(&mut self, name: &str) -> Result<(), Fault> {
         let place = self.place_of_robot(name, "robot")?;
         let robot = Arc::make_mut(&mut self.robots).remove(place);
+        self.changes.robot(&robot.name, ChangeKinds::REMOVED);
         robot.link_keys().chain(robot.key).for_each(|party| self.forget_entries_of(party));
         Ok(())
     }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::{BodyId, Edit, Epoch, NotKept, Refusal, Revision, Snapshot};
+use super::{BodyId, Edit, Epoch, NotKept, Refusal, Revision, SceneOptions, Snapshot};
 use crate::limits::{LimitExceeded, Limits};
 
 /// Builds with debug assertions look at every snapshot of a scene of up to so many bodies as a whole.
@@ -15,6 +15,8 @@ pub struct Scene {
     limits: Limits,
     /// Revisions without a gap, the latest last; never empty.
     kept: VecDeque<Arc<Snapshot>>,
+    /// Bytes that the kept snapshots wrote, but for the oldest.
+    written: usize,
 }
 
 /// What an accepted list of edits led to.
@@ -33,11 +35,17 @@ impl Scene {
         Self::with_limits(epoch, Limits::default())
     }
 
+    /// As [`Scene::with_options`], with the default options.
+    #[must_use]
+    pub fn with_limits(epoch: Epoch, limits: Limits) -> Self {
+        Self::with_options(epoch, limits, &SceneOptions::default())
+    }
+
     /// An empty scene at revision zero. Of the caps it holds those on edits, bodies, robots, entries for pairs, groups,
     /// names and snapshots.
     #[must_use]
-    pub fn with_limits(epoch: Epoch, limits: Limits) -> Self {
-        Self { limits, kept: VecDeque::from([Arc::new(Snapshot::empty(epoch))]) }
+    pub fn with_options(epoch: Epoch, limits: Limits, options: &SceneOptions) -> Self {
+        Self { limits, kept: VecDeque::from([Arc::new(Snapshot::empty(epoch, options))]), written: 0 }
     }
 
     /// The latest snapshot.
@@ -80,6 +88,7 @@ impl Scene {
         }
         LimitExceeded::check("max_edits", edits.len(), self.limits.max_edits)?;
         let mut next = Snapshot::clone(self.latest());
+        next.written = 0;
         let mut added = Vec::new();
         for (index, edit) in edits.iter().enumerate() {
             let outcome = next.change(edit, &self.limits);
@@ -87,12 +96,24 @@ impl Scene {
         }
         let revision = Revision(actual.0 + 1);
         next.settle(self.latest(), revision);
+        next.changes.close(revision, self.limits.snapshots_kept);
         debug_assert!(next.body_count() > VALIDATED_BODIES || next.validate() == Ok(()), "{:?}", next.validate());
+        next.count_written(added.len());
+        self.written += next.written();
         self.kept.push_back(Arc::new(next));
-        while self.kept.len() > self.limits.snapshots_kept.max(1) {
-            self.kept.pop_front();
-        }
+        self.let_go();
         Ok(Applied { revision, added })
+    }
+
+    /// Lets the oldest snapshots go that are too many, or hold too much beside the latest.
+    fn let_go(&mut self) {
+        while self.kept.len() > 1
+            && (self.kept.len() > self.limits.snapshots_kept || self.written > self.limits.max_kept_bytes)
+        {
+            self.kept.pop_front();
+            // The oldest kept holds all of its own; only what came after it is held beside.
+            self.written -= self.kept[0].written();
+        }
     }
 
     fn latest(&self) -> &Arc<Snapshot> {

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use rpds::HashTrieMapSync;
 
+use super::change_log::ChangeLog;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
-use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene};
-use crate::broad_phase::DynamicTree;
+use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene, SceneOptions};
+use crate::broad_phase::BroadPhase;
 
 /// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
 #[derive(Clone, Debug)]
@@ -22,7 +23,7 @@ pub struct Snapshot {
     pub(super) next_body: BodyId,
     pub(super) groups: Groups,
     /// Enabled bodies with bounds, by their ids.
-    pub(super) tree: DynamicTree,
+    pub(super) broad_phase: BroadPhase,
     /// Enabled bodies without bounds, sorted.
     pub(super) unbounded: Arc<Vec<BodyId>>,
     /// In the order of their names.
@@ -32,11 +33,16 @@ pub struct Snapshot {
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
     pub(super) largest_margin: f64,
+    /// An entry that may have had the largest margin was changed in this draft.
+    pub(super) largest_margin_gone: bool,
+    pub(super) changes: ChangeLog,
+    /// Bytes that the edits wrote which led here.
+    pub(super) written: usize,
 }
 
 impl Snapshot {
     /// The scene at the beginning of an epoch: empty, revision zero. The first body gets the id 1.
-    pub(super) fn empty(epoch: Epoch) -> Self {
+    pub(super) fn empty(epoch: Epoch, options: &SceneOptions) -> Self {
         Self {
             epoch,
             revision: Revision(0),
@@ -44,7 +50,7 @@ impl Snapshot {
             names: HashTrieMapSync::new_sync(),
             next_body: BodyId(1),
             groups: Groups::new(),
-            tree: DynamicTree::new(),
+            broad_phase: BroadPhase::new(options.broad_phase),
             unbounded: Arc::new(Vec::new()),
             robots: Arc::new(Vec::new()),
             next_link: 0,
@@ -52,6 +58,9 @@ impl Snapshot {
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
             largest_margin: 0.0,
+            largest_margin_gone: false,
+            changes: ChangeLog::new(Revision(0)),
+            written: 0,
         }
     }
 
@@ -70,6 +79,12 @@ impl Snapshot {
     /// All bodies in the order of their ids.
     pub fn bodies(&self) -> impl Iterator<Item = &Arc<Body>> {
         self.bodies.values()
+    }
+
+    /// Bodies with ids above `id`, in the order of their ids.
+    pub fn bodies_after(&self, id: BodyId) -> impl Iterator<Item = &Arc<Body>> {
+        let first = id.0.checked_add(1);
+        first.into_iter().flat_map(|first| self.bodies.values_from(first))
     }
 
     /// Number of bodies.
@@ -92,8 +107,8 @@ impl Snapshot {
 
     /// The enabled bodies that have bounds; a payload is the number of a [`BodyId`], a box is [`Body::bounds`].
     #[must_use]
-    pub fn tree(&self) -> &DynamicTree {
-        &self.tree
+    pub fn broad_phase(&self) -> &BroadPhase {
+        &self.broad_phase
     }
 
     /// The enabled bodies that have no bounds (half-spaces and planes), in the order of their ids.

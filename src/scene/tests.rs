@@ -1,8 +1,10 @@
 //! The scene against what it should hold. Here is what the tests have in common: small bodies, a small robot, and edits
 //! that must be accepted.
 
+mod changes;
 mod entries;
 mod history;
+mod memory;
 mod model;
 mod random_edits;
 mod refusals;

@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::pair_table::PairTable;
 use super::party::PartyKey;
 use super::{Body, Snapshot};
-use crate::broad_phase::TreeDefect;
+use crate::broad_phase::BroadPhaseDefect;
 
 /// What is wrong with a snapshot. None of these can be reached through edits; tests and fuzzers look.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SnapshotDefect {
-    /// The tree is not a valid tree.
-    #[error("tree: {0}")]
-    Tree(#[from] TreeDefect),
+    /// The broad phase is not what it claims to be.
+    #[error("broad phase: {0}")]
+    BroadPhase(#[from] BroadPhaseDefect),
     /// A body that is not where it is looked up.
     #[error("body {body}: {what}")]
     Body {
@@ -41,18 +41,19 @@ impl Snapshot {
     /// # Errors
     /// The first defect found. A snapshot that edits have led to has none.
     pub fn validate(&self) -> Result<(), SnapshotDefect> {
-        self.tree.validate()?;
+        self.broad_phase.validate()?;
         for body in self.bodies() {
             let sound = self.check_body(body);
             sound.map_err(|what| SnapshotDefect::Body { body: body.name.to_string(), what })?;
         }
         check(self.names.size() == self.bodies.len(), "there are names of no body")?;
-        let in_tree = self.bodies().filter(|body| body.proxy.is_some()).count();
-        check(in_tree == self.tree.len(), "the tree has entries of no body")?;
+        let listed = self.bodies().filter(|body| body.proxy.is_some()).count();
+        check(listed == self.broad_phase.len(), "the broad phase has entries of no body")?;
         let unbounded = self.bodies().filter(|body| body.enabled && body.bounds.is_none()).map(|body| body.id);
         check(unbounded.eq(self.unbounded.iter().copied()), "the list of bodies without bounds is not right")?;
         self.check_robots()?;
-        self.check_entries()
+        self.check_entries()?;
+        self.changes.defect(self.revision).map_or(Ok(()), |what| check(false, what))
     }
 
     fn check_body(&self, body: &Body) -> Result<(), &'static str> {
@@ -64,11 +65,11 @@ impl Snapshot {
         holds(body.bounds == body.shape.placed_bounds(&body.placement), "its bounds are of another shape or pose")?;
         match body.proxy {
             Some(proxy) => {
-                let (payload, tight) = (self.tree.payload(proxy), Some(self.tree.tight(proxy)));
-                holds(body.enabled, "in the tree, but not enabled")?;
-                holds(payload == body.id.0 && tight == body.bounds, "its entry in the tree is another's")?;
+                let (payload, tight) = (self.broad_phase.payload(proxy), Some(self.broad_phase.tight(proxy)));
+                holds(body.enabled, "in the broad phase, but not enabled")?;
+                holds(payload == body.id.0 && tight == body.bounds, "its entry in the broad phase is another's")?;
             }
-            None => holds(!body.enabled || body.bounds.is_none(), "not in the tree")?,
+            None => holds(!body.enabled || body.bounds.is_none(), "not in the broad phase")?,
         }
         let mut keys: Vec<Option<PartyKey>> = body.groups.iter().map(|name| self.groups.key(name)).collect();
         keys.sort_unstable();

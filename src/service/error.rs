@@ -143,6 +143,7 @@ impl From<Refused> for ServiceError {
     fn from(refused: Refused) -> Self {
         match refused {
             Refused::Invalid { field, problem } => Self::Invalid { field, problem },
+            Refused::Gone { asked, oldest } => Self::RevisionGone { asked, oldest },
             Refused::NotFound { what, name, revision: _ } => Self::NotFound { what, name },
         }
     }

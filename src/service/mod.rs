@@ -5,13 +5,16 @@
 
 mod admission;
 mod assets;
+mod contact_watch;
 mod deadline;
 mod error;
 mod library;
+mod published;
 mod remembered_keys;
 mod revision_rule;
 mod robots;
 mod scene_cell;
+mod scene_health;
 mod scenes;
 #[expect(clippy::module_inception, reason = "the service of the floor `service`")]
 mod service;
@@ -19,6 +22,7 @@ mod view;
 mod workers;
 
 pub use assets::{ContentHash, NotAHash, Stored, Upload};
+pub use contact_watch::ContactWatch;
 pub use deadline::Patience;
 pub use error::ServiceError;
 pub use library::{Library, MeshReading, UnusableMesh};
@@ -26,6 +30,7 @@ pub use remembered_keys::IdempotencyKey;
 pub use revision_rule::{RevisionRule, Rule};
 pub use robots::{LoadedRobot, RobotDescription, Robots};
 pub use scene_cell::Change;
+pub use scene_health::{KeptRevision, SceneHealth};
 pub use scenes::SceneSummary;
 pub use service::{Changed, Config, Door, Service, Target};
 pub use view::View;

@@ -38,14 +38,18 @@ impl Kept {
         Self { snapshots: VecDeque::from([first]) }
     }
 
-    /// The same with one more, and without those that are then too many.
-    pub fn with(&self, next: Arc<Snapshot>, kept: usize) -> Self {
+    /// The same with one more, and without those before `oldest`.
+    pub fn with(&self, next: Arc<Snapshot>, oldest: Revision) -> Self {
         let mut snapshots = self.snapshots.clone();
         snapshots.push_back(next);
-        while snapshots.len() > kept.max(1) {
+        while snapshots.len() > 1 && snapshots[0].revision() < oldest {
             snapshots.pop_front();
         }
         Self { snapshots }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<Snapshot>> {
+        self.snapshots.iter()
     }
 
     pub fn oldest(&self) -> &Arc<Snapshot> {

@@ -5,18 +5,19 @@
 
 use std::sync::Arc;
 
-use arc_swap::ArcSwap;
 use tokio::sync::{Mutex, watch};
 use tokio::time::timeout_at;
 
 use super::admission::{Admission, Permit};
 use super::deadline::{Deadline, Stop};
+use super::published::Published;
 use super::remembered_keys::{IdempotencyKey, RememberedKeys};
-use super::revision_rule::{Kept, RevisionRule, Rule};
+use super::revision_rule::{RevisionRule, Rule};
+use super::scene_health::SceneHealth;
 use super::scenes::SceneSummary;
 use super::{ServiceError, workers};
 use crate::limits::Limits;
-use crate::scene::{Applied, Edit, Epoch, Revision, Scene, Snapshot};
+use crate::scene::{Applied, Edit, Epoch, Revision, Scene, SceneOptions, Snapshot};
 
 /// A change that is asked for.
 #[derive(Clone, Debug)]
@@ -36,18 +37,11 @@ pub struct Change {
 pub(super) struct SceneCell {
     name: String,
     epoch: Epoch,
-    kept: usize,
     queue: Admission,
     writer: Arc<Mutex<Writer>>,
-    published: ArcSwap<Kept>,
-    head: watch::Sender<Head>,
-}
-
-/// What those who wait for a revision look at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Head {
-    At(Revision),
-    Deleted,
+    published: Published,
+    /// Wakes those who wait for a revision: each time there is one more, and when the scene is deleted.
+    head: watch::Sender<()>,
 }
 
 #[derive(Debug)]
@@ -59,18 +53,17 @@ struct Writer {
 }
 
 impl SceneCell {
-    pub fn new(name: String, epoch: Epoch, limits: &Limits) -> Self {
-        let scene = Scene::with_limits(epoch, limits.clone());
+    pub fn new(name: String, epoch: Epoch, limits: &Limits, options: &SceneOptions) -> Self {
+        let scene = Scene::with_options(epoch, limits.clone(), options);
         let snapshot = scene.snapshot();
-        let head = watch::Sender::new(Head::At(snapshot.revision()));
+        let head = watch::Sender::new(());
         let keys = RememberedKeys::new(limits.idempotency_keys_kept);
         Self {
             name,
             epoch,
-            kept: limits.snapshots_kept,
             queue: Admission::new("max_queued_writes", limits.max_queued_writes),
             writer: Arc::new(Mutex::new(Writer { scene, keys, broken: false })),
-            published: ArcSwap::from_pointee(Kept::new(snapshot)),
+            published: Published::new(snapshot),
             head,
         }
     }
@@ -82,8 +75,13 @@ impl SceneCell {
             epoch: self.epoch,
             revision: latest.revision(),
             bodies: latest.body_count(),
-            robots: 0, /*latest.robots().len()*/
+            robots: latest.robots().count(),
+            broad_phase: latest.broad_phase().kind(),
         }
+    }
+
+    pub fn health(&self, against_rebuilt: bool) -> SceneHealth {
+        SceneHealth::of(self.name.clone(), &self.published.all(), against_rebuilt)
     }
 
     pub fn epoch(&self) -> Epoch {
@@ -91,11 +89,11 @@ impl SceneCell {
     }
 
     pub fn latest(&self) -> Arc<Snapshot> {
-        Arc::clone(self.published.load().latest())
+        self.published.latest()
     }
 
     pub fn oldest_revision(&self) -> Revision {
-        self.published.load().oldest().revision()
+        self.published.oldest_revision()
     }
 
     /// A place in the queue of changes.
@@ -103,20 +101,42 @@ impl SceneCell {
         Ok(self.queue.enter()?)
     }
 
-    /// The snapshot that fits the rule; waits for one that is still to come.
+    /// The snapshot that fits the rule. One that is there is given at once, without a lock; for one that is still to
+    /// come the caller waits.
     pub async fn snapshot(&self, rule: RevisionRule, deadline: Deadline) -> Result<Arc<Snapshot>, ServiceError> {
         self.check_epoch(rule.epoch)?;
+        if let Some(snapshot) = self.at_hand(rule.rule)? {
+            return Ok(snapshot);
+        }
         let mut head = self.head.subscribe();
         loop {
-            if *head.borrow_and_update() == Head::Deleted {
-                return Err(self.not_found());
-            }
-            if let Some(snapshot) = self.published.load().find(rule.rule)? {
-                return Ok(Arc::clone(snapshot));
+            head.mark_unchanged();
+            if let Some(snapshot) = self.at_hand(rule.rule)? {
+                return Ok(snapshot);
             }
             if timeout_at(deadline.at().into(), head.changed()).await.is_err() {
                 return Err(self.not_yet(rule.rule));
             }
+        }
+    }
+
+    fn at_hand(&self, rule: Rule) -> Result<Option<Arc<Snapshot>>, ServiceError> {
+        if self.published.is_deleted() { Err(self.not_found()) } else { self.published.find(rule) }
+    }
+
+    /// The newest snapshot, once it is newer than `told`; with revisions that come in quick succession not the next.
+    pub async fn newer_than(&self, told: Revision) -> Result<Arc<Snapshot>, ServiceError> {
+        let mut head = self.head.subscribe();
+        loop {
+            head.mark_unchanged();
+            if self.published.is_deleted() {
+                return Err(self.not_found());
+            }
+            let latest = self.latest();
+            if latest.revision() > told {
+                return Ok(latest);
+            }
+            head.changed().await.map_err(|_| self.not_found())?;
         }
     }
 
@@ -128,11 +148,11 @@ impl SceneCell {
         let cell = Arc::clone(self);
         workers::prepare(move || {
             let _turn = turn;
-            if stop.now() || *cell.head.borrow() == Head::Deleted {
+            if stop.now() || cell.published.is_deleted() {
                 return Err(if stop.now() { ServiceError::DeadlineExceeded } else { cell.not_found() });
             }
             let applied = writer.apply(change)?;
-            cell.publish(writer.scene.snapshot());
+            cell.publish(writer.scene.snapshot(), writer.scene.oldest_revision());
             Ok(applied)
         })
         .await
@@ -140,24 +160,17 @@ impl SceneCell {
 
     /// Wakes those who wait, and lets nobody change the scene any more.
     pub fn delete(&self) {
-        self.head.send_replace(Head::Deleted);
+        self.published.delete();
+        self.head.send_replace(());
     }
 
     /// Only the one who holds the lock on the writer calls this.
-    fn publish(&self, snapshot: Arc<Snapshot>) {
-        let before = self.published.load_full();
-        if snapshot.revision() == before.latest().revision() {
+    fn publish(&self, snapshot: Arc<Snapshot>, oldest: Revision) {
+        if snapshot.revision() == self.published.latest().revision() {
             return; // A repeated request: nothing new.
         }
-        let revision = snapshot.revision();
-        self.published.store(Arc::new(before.with(snapshot, self.kept)));
-        self.head.send_if_modified(|head| {
-            let alive = *head != Head::Deleted;
-            if alive {
-                *head = Head::At(revision);
-            }
-            alive
-        });
+        self.published.add(snapshot, oldest);
+        self.head.send_replace(());
     }
 
     fn check_epoch(&self, asked: Option<Epoch>) -> Result<(), ServiceError> {
@@ -198,5 +211,88 @@ impl Writer {
             self.keys.remember(key, applied.clone());
         }
         Ok(applied)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::pin::pin;
+    use std::task::{Context, Poll, Waker};
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::geometry::{Pose, Shape, Vec3};
+    use crate::scene::NewBody;
+    use crate::service::Patience;
+
+    fn cell() -> Arc<SceneCell> {
+        Arc::new(SceneCell::new("cell".to_owned(), Epoch(1), &Limits::default(), &SceneOptions::default()))
+    }
+
+    fn deadline() -> Deadline {
+        Deadline::new(Instant::now(), Patience::default(), Duration::from_secs(60)).unwrap()
+    }
+
+    fn change(edits: Vec<Edit>) -> Change {
+        Change { edits, expected_epoch: None, expected_revision: None, key: None }
+    }
+
+    fn ball() -> Edit {
+        Edit::AddBody(NewBody::new("ball", Arc::new(Shape::sphere(1.0).unwrap()), Pose::identity()))
+    }
+
+    async fn apply(cell: &Arc<SceneCell>, edits: Vec<Edit>) -> Revision {
+        let (stop, _waiting) = Stop::at(deadline());
+        cell.apply(change(edits), stop, cell.queue().unwrap()).await.unwrap().revision
+    }
+
+    /// What a future is at its first poll: a reader that has to wait for anything is not ready.
+    fn at_once<T>(future: impl Future<Output = T>) -> T {
+        match pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Ready(value) => value,
+            Poll::Pending => panic!("it waits"),
+        }
+    }
+
+    #[tokio::test]
+    async fn readers_go_on_while_the_writer_is_stopped_in_the_middle() {
+        let cell = cell();
+        apply(&cell, vec![ball()]).await;
+        let stopped = Arc::clone(&cell.writer).lock_owned().await;
+        for _ in 0..1000 {
+            for rule in [Rule::Latest, Rule::Exactly(Revision(0)), Rule::AtLeast(Revision(1))] {
+                let snapshot = at_once(cell.snapshot(RevisionRule { epoch: None, rule }, deadline())).unwrap();
+                assert_eq!(snapshot.body_count() as u64, snapshot.revision().0);
+            }
+            assert_eq!((cell.summary().bodies, cell.oldest_revision()), (1, Revision(0)));
+        }
+        drop(stopped);
+        assert_eq!(apply(&cell, vec![Edit::RemoveBody { body: "ball".into() }]).await, Revision(2));
+    }
+
+    #[tokio::test]
+    async fn the_writer_goes_on_while_a_reader_holds_an_old_snapshot() {
+        let cell = cell();
+        apply(&cell, vec![ball()]).await;
+        let held = cell.latest();
+        for step in 0..200_u32 {
+            let pose = Pose::new(Vec3::repeat(f64::from(step)), crate::geometry::Quaternion::IDENTITY).unwrap();
+            let revision = apply(&cell, vec![Edit::MoveBody { body: "ball".into(), pose }]).await;
+            assert_eq!(revision, Revision(u64::from(step) + 2));
+        }
+        // Long gone from the scene, and still what it was.
+        assert!(cell.oldest_revision() > held.revision());
+        assert_eq!((held.revision(), held.validate()), (Revision(1), Ok(())));
+        assert_eq!(held.body_named("ball").unwrap().pose, Pose::identity());
+    }
+
+    #[tokio::test]
+    async fn a_reader_that_waits_is_woken_by_the_revision_and_by_the_end() {
+        let cell = cell();
+        let rule = |asked| RevisionRule { epoch: None, rule: Rule::AtLeast(Revision(asked)) };
+        let (waited, _) = tokio::join!(cell.snapshot(rule(1), deadline()), apply(&cell, vec![ball()]));
+        assert_eq!(waited.unwrap().revision(), Revision(1));
+        let (waited, ()) = tokio::join!(cell.snapshot(rule(9), deadline()), async { cell.delete() });
+        assert!(matches!(waited, Err(ServiceError::NotFound { .. })), "{waited:?}");
     }
 }

@@ -10,7 +10,7 @@ use arc_swap::ArcSwap;
 use super::ServiceError;
 use super::scene_cell::SceneCell;
 use crate::limits::{LimitExceeded, Limits};
-use crate::scene::{Epoch, Revision};
+use crate::scene::{BroadPhaseKind, Epoch, Revision, SceneOptions};
 
 /// One scene, in short.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub struct SceneSummary {
     pub bodies: usize,
     /// How many robots.
     pub robots: usize,
+    /// How bodies are found that meet.
+    pub broad_phase: BroadPhaseKind,
 }
 
 /// The scenes of the daemon.
@@ -49,7 +51,7 @@ impl Scenes {
         }
     }
 
-    pub fn create(&self, name: &str) -> Result<SceneSummary, ServiceError> {
+    pub fn create(&self, name: &str, options: &SceneOptions) -> Result<SceneSummary, ServiceError> {
         if name.is_empty() {
             return Err(ServiceError::invalid("name", "is empty"));
         }
@@ -61,7 +63,7 @@ impl Scenes {
         }
         LimitExceeded::check("max_scenes", by_name.len() + 1, self.limits.max_scenes)?;
         let epoch = Epoch(self.next_epoch.fetch_add(1, Ordering::Relaxed));
-        let cell = SceneCell::new(name.to_owned(), epoch, &self.limits);
+        let cell = SceneCell::new(name.to_owned(), epoch, &self.limits, options);
         let summary = cell.summary();
         by_name.insert(name.to_owned(), Arc::new(cell));
         self.by_name.store(Arc::new(by_name));

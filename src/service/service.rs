@@ -1,23 +1,27 @@
 //! What do the doors call? One [`Service`] for all of them: it admits, finds the snapshot, keeps the time, and hands
 //! the work to threads. It knows neither messages nor sockets.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+
+use tokio::sync::watch;
 
 use super::ServiceError;
 use super::admission::Admission;
 use super::assets::{ContentHash, Stored, Upload};
+use super::contact_watch::ContactWatch;
 use super::deadline::{Deadline, Patience, Stop};
 use super::library::Library;
 use super::revision_rule::RevisionRule;
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
+use super::scene_health::SceneHealth;
 use super::scenes::{SceneSummary, Scenes};
 use super::view::View;
 use super::workers::{Workers, prepare};
 use crate::limits::Limits;
-use crate::scene::{Applied, Epoch, Revision};
+use crate::query::ContactQuestion;
+use crate::scene::{Applied, Epoch, Revision, SceneOptions, Snapshot};
 
 /// What a service is made with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,9 +68,10 @@ pub struct Service {
     robots: Arc<Robots>,
     scenes: Scenes,
     queries: Admission,
+    watchers: Admission,
     loads: Admission,
     doors: Mutex<Vec<Door>>,
-    draining: AtomicBool,
+    draining: watch::Sender<bool>,
 }
 
 impl Service {
@@ -84,9 +89,10 @@ impl Service {
             robots: Arc::new(Robots::new(limits)),
             scenes: Scenes::new(limits),
             queries: Admission::new("max_queries_in_flight", limits.max_queries_in_flight),
+            watchers: Admission::new("max_watchers", limits.max_watchers),
             loads,
             doors: Mutex::default(),
-            draining: AtomicBool::new(false),
+            draining: watch::Sender::new(false),
         }))
     }
 
@@ -131,18 +137,24 @@ impl Service {
         self.doors.lock().unwrap_or_else(PoisonError::into_inner).push(door);
     }
 
-    /// From now on every new request is refused; those under way are answered.
+    /// Callers that watch contacts.
+    #[must_use]
+    pub fn watchers(&self) -> usize {
+        self.watchers.under_way()
+    }
+
+    /// From now on every new request is refused; those under way are answered, and watches end.
     pub fn begin_drain(&self) {
-        self.draining.store(true, Ordering::Release);
+        self.draining.send_replace(true);
     }
 
     /// A new, empty scene.
     ///
     /// # Errors
     /// The name cannot be or is taken, or there are too many scenes.
-    pub fn create_scene(&self, name: &str) -> Result<SceneSummary, ServiceError> {
+    pub fn create_scene(&self, name: &str, options: &SceneOptions) -> Result<SceneSummary, ServiceError> {
         self.check_open()?;
-        self.scenes.create(name)
+        self.scenes.create(name, options)
     }
 
     /// All scenes, in the order of their names.
@@ -166,6 +178,22 @@ impl Service {
     /// The scene is not there.
     pub fn oldest_revision(&self, scene: &str) -> Result<Revision, ServiceError> {
         Ok(self.scenes.get(scene)?.oldest_revision())
+    }
+
+    /// How a scene is. Worked out on the threads that answer questions: it looks at all of the scene.
+    ///
+    /// # Errors
+    /// The scene is not there, or too many questions are being answered.
+    pub async fn scene_health(&self, scene: &str, against_rebuilt: bool) -> Result<SceneHealth, ServiceError> {
+        self.check_open()?;
+        let permit = self.queries.enter()?;
+        let cell = self.scenes.get(scene)?;
+        self.workers
+            .answer(move || {
+                let _permit = permit;
+                Ok(cell.health(against_rebuilt))
+            })
+            .await
     }
 
     /// Changes a scene, after the changes that came before. `change` is worked out on a thread of its own first; it may
@@ -249,8 +277,35 @@ impl Service {
             .await
     }
 
+    /// Watches the contacts of a scene. `question` is told the caps and the snapshot that comes first.
+    ///
+    /// # Errors
+    /// What `question` says, a scene or revision that is not there, a cap, or a deadline that came first.
+    pub async fn watch_contacts(
+        self: &Arc<Self>,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&Snapshot, &Limits) -> Result<ContactQuestion, ServiceError>,
+    ) -> Result<ContactWatch, ServiceError> {
+        self.check_open()?;
+        let permit = self.watchers.enter()?;
+        let cell = self.scenes.get(&target.scene)?;
+        let first = cell.snapshot(target.revision, self.deadline(patience)?).await?;
+        let question = question(&first, &self.limits)?;
+        Ok(ContactWatch::new(Arc::clone(self), cell, (question, first), patience, permit))
+    }
+
+    pub(super) fn workers(&self) -> &Workers {
+        &self.workers
+    }
+
+    /// Becomes true when the daemon drains.
+    pub(super) fn draining(&self) -> watch::Receiver<bool> {
+        self.draining.subscribe()
+    }
+
     fn check_open(&self) -> Result<(), ServiceError> {
-        if self.draining.load(Ordering::Acquire) { Err(ServiceError::ShuttingDown) } else { Ok(()) }
+        if *self.draining.borrow() { Err(ServiceError::ShuttingDown) } else { Ok(()) }
     }
 
     fn deadline(&self, patience: Patience) -> Result<Deadline, ServiceError> {

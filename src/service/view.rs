@@ -10,7 +10,11 @@ use rayon::prelude::*;
 use super::ServiceError;
 use super::deadline::Stop;
 use crate::limits::{LimitExceeded, Limits};
-use crate::query::{Answer, CheckStates, Context, PairQuery, Part, Prepared, Verdict};
+use crate::query::{
+    Answer, Answers, CastItem, CastRays, CastShapes, Casts, CheckMotions, CheckMovingPairs, CheckStates, Clearance,
+    ClearanceOf, Context, ItemBatch, MovingPairs, NearestBodies, NearestItem, Neighbours, Overlap, OverlapItem,
+    Overlaps, PairQuery, Part, Prepared, Rays, Verdict,
+};
 use crate::scene::Snapshot;
 
 /// A snapshot that is being asked. It exists only on the threads that answer questions.
@@ -46,6 +50,30 @@ impl View {
 
     /// # Errors
     /// As for [`View::check_states`].
+    pub fn check_motions(&self, question: &CheckMotions) -> Result<Answer, ServiceError> {
+        LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
+        LimitExceeded::check("max_motion_states", question.max_states, self.limits.max_motion_states)?;
+        self.answer(&Prepared::check_motions(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn clearance(&self, question: &Clearance) -> Result<Answer, ServiceError> {
+        let context = match &question.subjects {
+            ClearanceOf::States(states) => {
+                LimitExceeded::check("max_joint_values", states.positions.len(), self.limits.max_joint_values)?;
+                &states.context
+            }
+            ClearanceOf::Subjects(pairs) => {
+                LimitExceeded::check("max_items", pairs.items.len(), self.limits.max_items)?;
+                &pairs.context
+            }
+        };
+        self.answer(&Prepared::clearance(&self.snapshot, question)?, context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
     pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
         self.answer(&Prepared::collide(&self.snapshot, question)?, &question.context)
@@ -58,11 +86,54 @@ impl View {
         self.answer(&Prepared::distance(&self.snapshot, question)?, &question.context)
     }
 
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn cast_rays(&self, question: &CastRays) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&Rays::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn cast_shapes(&self, question: &CastShapes) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&Casts::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn check_moving_pairs(&self, question: &CheckMovingPairs) -> Result<Answers<CastItem>, ServiceError> {
+        self.answer_each(&MovingPairs::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn overlap(&self, question: &Overlap) -> Result<Answers<OverlapItem>, ServiceError> {
+        self.answer_each(&Overlaps::new(&self.snapshot, question)?, &question.context)
+    }
+
+    /// # Errors
+    /// As for [`View::check_states`].
+    pub fn nearest_bodies(&self, question: &NearestBodies) -> Result<Answers<NearestItem>, ServiceError> {
+        LimitExceeded::check("max_pairs", question.count, self.limits.max_pairs)?;
+        self.answer_each(&Neighbours::new(&self.snapshot, question)?, &question.context)
+    }
+
+    fn answer_each<B: ItemBatch>(&self, batch: &B, context: &Context) -> Result<Answers<B::Item>, ServiceError> {
+        LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
+        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
+        let parts: Vec<(Vec<B::Item>, usize)> = split(batch.len(), SMALLEST_PART).into_par_iter().map(run).collect();
+        let answers = batch.join(parts);
+        if answers.out_of_time && answers.answered == 0 {
+            return Err(ServiceError::DeadlineExceeded);
+        }
+        Ok(answers)
+    }
+
     fn answer(&self, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
-        let parts: Vec<Part> = split(question.len()).into_par_iter().map(run).collect();
+        let parts: Vec<Part> = split(question.len(), question.smallest_part()).into_par_iter().map(run).collect();
         let answer = question.join(parts);
         let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);
         if answer.out_of_time && nothing {
@@ -72,10 +143,10 @@ impl View {
     }
 }
 
-/// Ranges of items that follow one another.
-fn split(items: usize) -> Vec<Range<usize>> {
+/// Ranges of items that follow one another, of `smallest` items at least but for the last.
+fn split(items: usize, smallest: usize) -> Vec<Range<usize>> {
     let parts = PARTS_PER_THREAD * rayon::current_num_threads();
-    let size = items.div_ceil(parts).max(SMALLEST_PART);
+    let size = items.div_ceil(parts).max(smallest);
     (0..items).step_by(size).map(|first| first..(first + size).min(items)).collect()
 }
 
@@ -85,9 +156,9 @@ mod tests {
 
     #[test]
     fn parts_cover_the_items_in_order() {
-        assert!(split(0).is_empty());
+        assert!(split(0, 8).is_empty());
         for items in [1, 7, 8, 9, 100, 4096] {
-            let parts = split(items);
+            let parts = split(items, 8);
             assert_eq!(parts[0].start, 0);
             assert_eq!(parts[parts.len() - 1].end, items);
             assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));

@@ -31,7 +31,7 @@ pub const FLOORS: &[Floor] = &[
     Floor { name: "narrow_phase", may_name: &[GEOMETRY], but_not: &[] },
     Floor {
         name: "broad_phase",
-        may_name: &["geometry::Aabb", "geometry::Vec3", "geometry::Pose", "geometry::Placement"],
+        may_name: &["geometry::Aabb", "geometry::BoxCast", "geometry::Vec3", "geometry::Pose", "geometry::Placement"],
         but_not: &[],
     },
     Floor { name: "robot", may_name: &[GEOMETRY], but_not: &[] },
@@ -67,7 +67,7 @@ pub const KERNEL: &[&str] = &[GEOMETRY, "limits", "narrow_phase", "broad_phase",
 /// Who may name which crate of `Cargo.toml`. A new dependency needs a line here before it builds into the house.
 pub const CRATES: &[(&str, &[&str])] = &[
     ("arc-swap", &["service"]),
-    ("arrayvec", &[GEOMETRY, "narrow_phase"]),
+    ("arrayvec", &[GEOMETRY, "narrow_phase", "broad_phase"]),
     ("base64", &[GEOMETRY]),
     ("clap", &["app", "cli", "main"]),
     ("clarabel", &["narrow_phase"]),
@@ -95,6 +95,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("tonic-reflection", &["transports"]),
     ("tracing", &["service", "transports", "app", "cli", "main"]),
     ("tracing-subscriber", &["app", "cli", "main"]),
+    ("wide", &["broad_phase"]),
 ];
 
 /// What is wrong with the imports of `source`, one line each.

@@ -42,6 +42,30 @@ fn nothing_wrong(faults: Vec<String>) {
     assert!(faults.is_empty(), "{} fault(s):\n{}", faults.len(), faults.join("\n"));
 }
 
+/// What a question goes through from the door's call to its answer, on the floor `service`; below it no lock is allowed
+/// anyway.
+const READ_PATH: &[&str] = &["published.rs", "revision_rule.rs", "view.rs", "admission.rs", "scene_health.rs"];
+
+/// Words that stand for waiting on somebody else.
+const LOCKS: &[&str] =
+    &["Mutex", "RwLock", "Condvar", "OnceLock", "LazyLock", "Semaphore", "Notify", "Barrier", "watch", "mpsc", "lock"];
+
+fn locks(source: &Source) -> Vec<String> {
+    let named = source.words.iter().filter(|word| LOCKS.contains(&word.text.as_str()));
+    named.map(|word| format!("{}:{}: a reader must not wait: `{}`", source.file, word.line, word.text)).collect()
+}
+
+#[test]
+fn readers_take_no_lock() {
+    let sources = sources();
+    let on_the_path = |source: &&Source| READ_PATH.iter().any(|file| source.file == format!("src/service/{file}"));
+    let path: Vec<&Source> = sources.iter().filter(on_the_path).collect();
+    assert_eq!(path.len(), READ_PATH.len());
+    nothing_wrong(path.into_iter().flat_map(locks).collect());
+    let wrong = Source::parse("src/service/view.rs", "fn f(m: &std::sync::Mutex<u8>) { m.lock(); }").unwrap();
+    assert_eq!(locks(&wrong).len(), 2);
+}
+
 #[test]
 fn imports_go_downward_only() {
     nothing_wrong(sources().iter().flat_map(floors::check).collect());

@@ -24,7 +24,13 @@ fn least(shape: &Shape, at: &Placement, direction: Vec3) -> f64 {
         Core::Convex(hull) => hull.points().iter().map(|p| p.dot(&d)).fold(f64::INFINITY, f64::min),
         Core::Triangle(corners) => corners.iter().map(|p| p.dot(&d)).fold(f64::INFINITY, f64::min),
         Core::Segment(ends) => ends.iter().map(|p| p.dot(&d)).fold(f64::INFINITY, f64::min),
-        Core::HalfSpace { .. } | Core::Plane { .. } | Core::Mesh(_) | Core::Compound(_) => unreachable!("convex only"),
+        Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_) => unreachable!("convex only"),
     };
     direction.dot(&at.translation) + core - shape.swept_radius()
 }

@@ -262,3 +262,26 @@ fn of_equally_near_pairs_the_one_with_the_lesser_sides_is_told() {
         assert_eq!(found.a, Side::Query { subshape: 0 }, "part 0 comes before part 1, whichever body was met first");
     }
 }
+
+/// A cut-off of zero once said that a contact was known, so that no digit more was spent on a touch.
+#[test]
+fn boxes_that_touch_exactly_are_decided_whatever_is_wanted_and_whatever_was_found_before() {
+    let cuboid = Arc::new(Shape::cuboid(Vec3::new(0.25, 0.25, 0.25)).unwrap());
+    let turned = Quaternion { w: 1e-160, x: 0.0, y: 0.0, z: 1e-160 };
+    let at = |x: f64| Pose::new(Vec3::new(x, 0.6, 0.5), turned).unwrap();
+    let body = |(i, x): (usize, &f64)| Edit::AddBody(NewBody::new(format!("box {i}"), Arc::clone(&cuboid), at(*x)));
+    // The first two overlap, the last two touch at a face.
+    for places in [&[5.0, 5.25, 0.0, 0.5][..], &[0.0, 0.5]] {
+        let mut scene = Scene::new(Epoch(1));
+        scene.apply(&places.iter().enumerate().map(body).collect::<Vec<_>>(), None).unwrap();
+        for wants in [Wants::VERDICT, Wants { distance: true, ..Wants::VERDICT }, Wants::ALL] {
+            for cut_off in [None, Some(0.0)] {
+                let context = Context { cut_off, ..with(wants) };
+                let listed = ask(&scene.snapshot(), Subject::All, context.clone(), false);
+                assert!(listed.pairs.iter().all(|pair| pair.verdict == Verdict::Collision), "{wants:?}: {listed:?}");
+                assert_eq!(listed.pairs.len(), places.len() / 2);
+                assert_eq!(ask(&scene.snapshot(), Subject::All, context, true).verdict, Verdict::Collision);
+            }
+        }
+    }
+}

@@ -2,5 +2,13 @@
 
 mod batches;
 mod bodies;
+mod casts;
+mod changed_since;
+mod clearance;
+mod contacts;
+mod edges;
+mod motions;
+mod moving_scene;
+mod random_motions;
 mod ur5;
 mod workload;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clearance::app::Drained;
 use clearance::limits::Limits;
+use clearance::scene::SceneOptions;
 use clearance::transports::wire::v1;
 use clearance::transports::wire::v1::queries_client::QueriesClient;
 use clearance::transports::wire::v1::server_client::ServerClient;
@@ -151,7 +152,7 @@ async fn a_draining_daemon_answers_what_is_under_way_and_takes_nothing_new() {
     let answer = watched("the answer under way", asking).await.unwrap().unwrap();
     assert!(answer.into_inner().answer.unwrap().out_of_time);
     assert_eq!(watched("the end", stopping).await.unwrap(), Drained::Clean);
-    let refused = service.create_scene("late").unwrap_err();
+    let refused = service.create_scene("late", &SceneOptions::default()).unwrap_err();
     assert_eq!(Refusal::from(refused).reason, "SHUTTING_DOWN");
 }
 

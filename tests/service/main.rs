@@ -3,5 +3,6 @@
 
 mod conformance;
 mod connections;
+mod histories;
 mod process;
 mod support;

@@ -3,8 +3,7 @@
     clearance serve &
     python straight_line_path.py
 
-A UR5 stands over a table, beside a post. States are checked at steps along the path; what lies between two steps is not
-looked at.
+A UR5 stands over a table, beside a post. The path is proved free all along, or its first contact is bracketed.
 """
 
 import argparse
@@ -15,7 +14,6 @@ import numpy as np
 import clearance
 
 UR5 = Path(__file__).resolve().parents[3] / "tests" / "data" / "robot-ur5"
-STEPS = 1000
 
 
 def main() -> None:
@@ -42,18 +40,19 @@ def main() -> None:
 
 
 def report(scene, robot, bodies, start, goal) -> None:
-    along = np.linspace(0.0, 1.0, STEPS)[:, None]
-    path = (1.0 - along) * start + along * goal
-    answer = scene.check_states("arm", path, want="verdict", stop_at_first=True)
-    if answer.stopped_at is None:
-        nearest = scene.check_states("arm", path).lower
-        closest = int(np.argmin(nearest))
-        print(f"free at all {STEPS} steps; nearest at step {closest}, {nearest[closest]:.6f} m or more")
+    answer = scene.check_motions("arm", [start], [goal])
+    verdict, states = clearance.Verdict(answer.verdicts[0]), int(answer.states[0])
+    if verdict == clearance.Verdict.FREE:
+        print(f"free all the way, proved by {states} states")
         return
-    blocked = answer.stopped_at
-    (state,) = scene.look_at_states("arm", path[blocked : blocked + 1])
-    print(f"blocked at step {blocked} of {STEPS}, {100 * along[blocked, 0]:.1f} % of the way: {state.verdict.name}")
-    print("joint positions:", np.array2string(path[blocked], precision=4))
+    print(f"{verdict.name} after {states} states; free at least up to {100 * answer.free_until[0]:.3f} % of the way")
+    if verdict != clearance.Verdict.COLLISION:
+        return
+    first, last = answer.reached[0]
+    print(f"first contact between {100 * first:.3f} % and {100 * last:.3f} %")
+    contact = clearance.along(start, goal, last)
+    print("joint positions:", np.array2string(contact, precision=4))
+    (state,) = scene.look_at_states("arm", [contact])
     for pair in state.pairs:
         print(f"  {name(pair.a, robot, bodies)} and {name(pair.b, robot, bodies)}: {pair.signed_distance:.6f} m")
 

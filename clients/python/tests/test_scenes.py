@@ -6,6 +6,7 @@ import numpy as np
 
 import clearance
 from clearance import Verdict
+from clearance.v1 import scene_pb2
 
 from .daemon import DaemonTest
 
@@ -20,6 +21,28 @@ class Scenes(DaemonTest):
         (answer,) = self.scene.distance(subject, at_least=second.revision)
         self.assertAlmostEqual(answer.nearest.signed_distance, 2.5, places=12)
         self.assertEqual((answer.nearest.a.kind, answer.nearest.b.id), ("query", ball))
+
+    def test_the_broad_phase_is_chosen_with_the_scene(self) -> None:
+        for kind in ("tree", "sweep_and_prune", "exhaustive"):
+            scene = self.client.create_scene(f"scene with {kind}", broad_phase=kind)
+            scene.apply(*(clearance.add_body(f"ball {x}", clearance.sphere(0.6), clearance.pose([x, 0, 0])) for x in (0, 1, 3)))
+            (answer,) = scene.collide()
+            self.assertEqual(len(answer.pairs), 1, kind)
+            summary = next(one for one in self.client.scenes() if one.name == scene.name)
+            name = scene_pb2.BroadPhase.Name(summary.broad_phase)
+            self.assertEqual((summary.bodies, name), (3, f"BROAD_PHASE_{kind.upper()}"))
+        with self.assertRaisesRegex(ValueError, "broad_phase: is 'octree'"):
+            self.client.create_scene("never made", broad_phase="octree")
+
+    def test_health_tells_what_a_scene_holds(self) -> None:
+        self.scene.apply(*(clearance.add_body(f"ball {x}", clearance.sphere(0.1), clearance.pose([x, 0, 0])) for x in range(300)))
+        self.scene.apply(clearance.move_body("ball 0", clearance.pose([0, 0, 1])))
+        health = self.scene.health()
+        self.assertEqual((health.bodies, health.tree.entries, [kept.revision for kept in health.kept]), (300, 300, [0, 1, 2]))
+        self.assertGreater(health.kept[1].written_bytes, 5 * health.kept[2].written_bytes)
+        self.assertGreaterEqual(health.kept_bytes, health.memory.bodies + health.memory.broad_phase)
+        contents = self.scene.contents()
+        self.assertEqual((len(contents.bodies), contents.body_count, contents.bodies_left), (300, 300, False))
 
     def test_distance_gives_bracket_points_and_normal(self) -> None:
         self.scene.apply(
@@ -82,6 +105,8 @@ class Scenes(DaemonTest):
             "plane": clearance.plane([0, 0, 1], 0.0),
             "mesh": clearance.mesh(corners, faces, "solid"),
             "compound": clearance.compound([(clearance.sphere(0.1), clearance.pose([1, 0, 0]))]),
+            "height_field": clearance.height_field([[0, 1], [1, 2]], [0.5, 0.5], -1.0),
+            "point_cloud": clearance.point_cloud(corners, 0.1),
         }
         self.scene.apply(*(clearance.add_body(name, shape) for name, shape in shapes.items()))
         self.assertEqual([body.shape_kind for body in self.scene.contents().bodies], list(shapes))
@@ -97,6 +122,40 @@ class Scenes(DaemonTest):
         self.scene.apply(clearance.set_pair_margin(a, b, None), clearance.allow_collision(a, b))
         (answer,) = self.scene.distance()
         self.assertEqual((answer.verdict, answer.nearest), (Verdict.FREE, None))
+
+
+class Fields(DaemonTest):
+    def test_terrain_is_solid_below_its_surface(self) -> None:
+        x = np.linspace(0.0, 2.0, 21)
+        heights = np.add.outer(0.0 * x, x)  # Rising by 1 a metre along x.
+        for dtype in (np.float64, np.float32):
+            with self.subTest(dtype):
+                self.scene.apply(clearance.add_body("hill", clearance.height_field(heights.astype(dtype), [0.1, 0.1], -1.0)))
+                points = [(1.0, 2.0), (1.0, 0.5)]
+                subjects = [(clearance.point(), clearance.pose([px, 1.03, pz])) for px, pz in points]
+                over, under = self.scene.distance(*subjects)
+                self.assertAlmostEqual(over.nearest.signed_distance, np.sqrt(0.5), places=6)
+                self.assertEqual(under.verdict, Verdict.COLLISION)
+                self.scene.apply(clearance.remove_body("hill"))
+
+    def test_a_point_cloud_is_as_far_as_its_nearest_ball(self) -> None:
+        points = np.random.default_rng(5).uniform(-1.0, 1.0, (5000, 3))
+        self.scene.apply(clearance.add_body("cloud", clearance.point_cloud(points, 0.01)))
+        for place in np.random.default_rng(6).uniform(-2.0, 2.0, (20, 3)):
+            (answer,) = self.scene.distance((clearance.point(), clearance.pose(place)))
+            gaps = np.linalg.norm(points - place, axis=1) - 0.01
+            self.assertAlmostEqual(answer.nearest.signed_distance, gaps.min(), places=12)
+            self.assertEqual(answer.nearest.b.subshape, gaps.argmin())
+
+    def test_arrays_of_the_wrong_shape_are_refused_before_they_are_sent(self) -> None:
+        for make, field in [
+            (lambda: clearance.height_field([1.0, 2.0], [1, 1], 0.0), "heights"),
+            (lambda: clearance.height_field([[1.0, 2.0]] * 2, [1, 1, 1], 0.0), "spacing"),
+            (lambda: clearance.height_field([["a", "b"]] * 2, [1, 1], 0.0), "heights"),
+            (lambda: clearance.point_cloud([1.0, 2.0, 3.0]), "points"),
+        ]:
+            with self.subTest(field), self.assertRaisesRegex(ValueError, field):
+                make()
 
 
 class Refusals(DaemonTest):

@@ -20,6 +20,7 @@ enum Corners<'a> {
     /// Both ends of a segment around the origin.
     Axis(Vec3),
     Listed(&'a [Vec3]),
+    Few([Vec3; 6]),
 }
 
 impl<'a> Polytope<'a> {
@@ -41,18 +42,22 @@ impl<'a> Polytope<'a> {
             Core::Convex(hull) => (Corners::Listed(hull.points()), 0.0),
             Core::Triangle(corners) => (Corners::Listed(corners), 0.0),
             Core::Segment(ends) => (Corners::Listed(ends), 0.0),
+            Core::Column(column) => (Corners::Few(column.corners()), 0.0),
             Core::Cylinder { .. }
             | Core::Cone { .. }
             | Core::Ellipsoid { .. }
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Mesh(_)
-            | Core::Compound(_) => return None,
+            | Core::Compound(_)
+            | Core::HeightField(_)
+            | Core::PointCloud(_) => return None,
         };
         let span = match &corners {
             Corners::Origin => Span::EMPTY,
             Corners::Cuboid(half) | Corners::Axis(half) => Span::of(half.iter().copied()),
             Corners::Listed(points) => Span::of(points.iter().flat_map(|p| p.iter().copied())),
+            Corners::Few(points) => Span::of(points.iter().flat_map(|p| p.iter().copied())),
         };
         Some((Self { corners, span }, radius))
     }
@@ -63,6 +68,7 @@ impl<'a> Polytope<'a> {
             Corners::Cuboid(_) => 8,
             Corners::Axis(_) => 2,
             Corners::Listed(points) => points.len(),
+            Corners::Few(points) => points.len(),
         }
     }
 
@@ -74,6 +80,7 @@ impl<'a> Polytope<'a> {
             Corners::Cuboid(half) => Vec3::new(signed(0, half.x), signed(1, half.y), signed(2, half.z)),
             Corners::Axis(half) => half.map(|c| signed(0, c)),
             Corners::Listed(points) => points[index],
+            Corners::Few(points) => points[index],
         }
     }
 

@@ -13,7 +13,7 @@ fn bodies_are_found_by_id_name_and_place() {
     assert_eq!(snapshot.bodies().map(|body| &*body.name).collect::<Vec<_>>(), ["a", "f"]);
     assert_eq!(snapshot.body_named("a").unwrap().id, BodyId(1));
     assert_eq!(snapshot.unbounded(), [BodyId(2)]);
-    assert_eq!(snapshot.tree().iter().map(|(payload, _)| payload).collect::<Vec<_>>(), [1]);
+    assert_eq!(snapshot.broad_phase().iter().map(|(payload, _)| payload).collect::<Vec<_>>(), [1]);
     assert!(snapshot.body(BodyId(3)).is_none() && snapshot.body_named("b").is_none());
 }
 
@@ -83,10 +83,10 @@ fn disabled_and_unbounded_bodies_are_not_in_the_tree() {
     let mut scene = scene_of([ball("a", 0.0), floor("f")]);
     let enable = |body: &str, enabled| Edit::SetEnabled { body: body.into(), enabled };
     apply(&mut scene, &[enable("a", false), enable("f", false)]);
-    assert!(scene.snapshot().tree().is_empty() && scene.snapshot().unbounded().is_empty());
+    assert!(scene.snapshot().broad_phase().is_empty() && scene.snapshot().unbounded().is_empty());
     assert!(!admits(&scene, "a", "f"));
     apply(&mut scene, &[enable("a", true), enable("f", true)]);
-    assert_eq!((scene.snapshot().tree().len(), scene.snapshot().unbounded().len()), (1, 1));
+    assert_eq!((scene.snapshot().broad_phase().len(), scene.snapshot().unbounded().len()), (1, 1));
     assert!(admits(&scene, "a", "f"));
     // A ball becomes a floor and the floor a ball.
     let replace = |body: &str, like: NewBody| Edit::ReplaceShape {

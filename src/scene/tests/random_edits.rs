@@ -95,7 +95,7 @@ fn edits(model: Arc<RobotModel>) -> impl Strategy<Value = Edit> {
 }
 
 /// Lists of edits, each with how far the expected revision is from the real one, if one is given.
-fn sessions(model: Arc<RobotModel>) -> impl Strategy<Value = Vec<(Vec<Edit>, Option<u64>)>> {
+pub(super) fn sessions(model: Arc<RobotModel>) -> impl Strategy<Value = Vec<(Vec<Edit>, Option<u64>)>> {
     let expected = prop_oneof![6 => Just(None), 3 => Just(Some(0)), 1 => Just(Some(1))];
     let list = prop_oneof![1 => Just(0_usize), 8 => Just(1), 3 => 2..5_usize]
         .prop_flat_map(move |length| prop::collection::vec(edits(Arc::clone(&model)), length));

@@ -7,7 +7,7 @@ use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status};
 
 use crate::geometry::Pose;
-use crate::query::{Answer, CheckStates, PairQuery};
+use crate::query::{Answer, CheckMotions, CheckStates, Clearance, Motions, PairQuery};
 use crate::scene::{Applied, BodyId, BodyRef, Epoch, NewBody, Revision};
 use crate::service::{Changed, ContentHash, RobotDescription, Target};
 use crate::transports::wire::from_proto::NotAnAnswer;
@@ -204,7 +204,7 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub async fn create_scene(&self, name: &str) -> Result<Epoch, ClientError> {
-        let request = v1::CreateSceneRequest { name: name.to_owned() };
+        let request = v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() };
         let scene = self.scenes.clone().create_scene(request).await?.into_inner().scene;
         Ok(Epoch(scene.ok_or(ClientError::Missing("scene"))?.epoch))
     }
@@ -242,6 +242,36 @@ impl Client {
         let request = to_proto::check_states_request(target, question);
         let response = self.queries.clone().check_states(request).await?.into_inner();
         plain(response.answer)
+    }
+
+    /// Is the robot free all along these motions, or this path?
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub async fn check_motions(&self, target: &Target, question: &CheckMotions) -> Result<Answer, ClientError> {
+        let mut queries = self.queries.clone();
+        let answer = match question.motions {
+            Motions::Edges => {
+                let request = to_proto::check_motions_request(target, question);
+                let response = queries.check_motions(request).await?.into_inner();
+                from_proto::motions(response.answer.as_ref(), &response.motions)
+            }
+            Motions::Path => {
+                let request = to_proto::check_path_request(target, question);
+                let response = queries.check_path(request).await?.into_inner();
+                from_proto::motions(response.answer.as_ref(), &response.motions)
+            }
+        };
+        Ok(answer?)
+    }
+
+    /// Which pairs are within a distance?
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub async fn clearance(&self, target: &Target, question: &Clearance) -> Result<Answer, ClientError> {
+        let request = to_proto::clearance_request(target, question);
+        plain(self.queries.clone().clearance(request).await?.into_inner().answer)
     }
 
     /// What touches?

@@ -6,6 +6,7 @@
 
 mod assets;
 mod client;
+mod contacts;
 mod door;
 mod grpc_timeout;
 mod handlers;

@@ -16,7 +16,9 @@ impl Scenes for Handlers {
         &self,
         request: Request<v1::CreateSceneRequest>,
     ) -> Result<Response<v1::CreateSceneResponse>, Status> {
-        let created = self.service.create_scene(&request.into_inner().name);
+        let request = request.into_inner();
+        let options = from_proto::scene_options(&request);
+        let created = options.and_then(|options| self.service.create_scene(&request.name, &options));
         respond(created.map(|scene| v1::CreateSceneResponse { scene: Some(to_proto::scene_summary(&scene)) }))
     }
 
@@ -30,6 +32,15 @@ impl Scenes for Handlers {
 
     async fn get_scene(&self, request: Request<v1::GetSceneRequest>) -> Result<Response<v1::GetSceneResponse>, Status> {
         respond(self.contents(request).await)
+    }
+
+    async fn get_scene_health(
+        &self,
+        request: Request<v1::GetSceneHealthRequest>,
+    ) -> Result<Response<v1::GetSceneHealthResponse>, Status> {
+        let request = request.into_inner();
+        let health = self.service.scene_health(&request.scene, request.against_rebuilt).await;
+        respond(health.map(|health| v1::GetSceneHealthResponse { health: Some(to_proto::scene_health(&health)) }))
     }
 
     async fn delete_scene(
@@ -50,12 +61,13 @@ impl Handlers {
         let timeout = grpc_timeout(request.metadata())?;
         let message = request.into_inner();
         let revision = from_proto::revision_rule(message.revision.as_ref());
+        let page = from_proto::body_page(&message, self.service.limits())?;
         let target = Target { scene: message.scene, revision };
         let oldest = self.service.oldest_revision(&target.scene)?;
         let (name, robots) = (target.scene.clone(), Arc::clone(self.service.robots()));
         let patience = Patience { timeout, time_budget: None };
         let question = self.service.ask(&target, patience, move |view| {
-            let contents = to_proto::scene_contents(&name, view.snapshot(), oldest, &robots);
+            let contents = to_proto::scene_contents(&name, view.snapshot(), oldest, &robots, page);
             Ok(v1::GetSceneResponse { scene: Some(contents) })
         });
         question.await

@@ -28,7 +28,7 @@ async fn check_edits(door: &impl Door, cases: Vec<(v1::Edit, &str)>) {
         let refusal = door.apply(apply(edits)).await.expect_err(field);
         assert_eq!((refusal.code, refusal.field.as_str()), (Code::InvalidArgument, field), "{refusal:?}");
     }
-    let contents = v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None };
+    let contents = v1::GetSceneRequest { scene: SCENE.to_owned(), ..v1::GetSceneRequest::default() };
     let contents = door.get_scene(contents).await.unwrap();
     assert_eq!((contents.revision, contents.bodies.len()), (0, 0));
 }

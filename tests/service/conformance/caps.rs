@@ -68,6 +68,6 @@ async fn requests_beyond_a_cap_are_refused_by_its_name(door: &impl Door) {
     door.apply(apply(vec![add_robot("arm", &robot.id)])).await.unwrap();
     beyond("max_joint_values", door.check_states(states(vec![0.0; 10])).await);
     beyond("max_items", door.check_states(states(vec![0.0; 8])).await);
-    let contents = v1::GetSceneRequest { scene: SCENE.to_owned(), revision: None };
+    let contents = v1::GetSceneRequest { scene: SCENE.to_owned(), ..v1::GetSceneRequest::default() };
     assert_eq!(door.get_scene(contents).await.unwrap().revision, 1);
 }

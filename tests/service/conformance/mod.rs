@@ -3,6 +3,10 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod casts;
+mod contacts;
+mod fields;
+mod motions;
 mod questions;
 mod revisions;
 mod robots;

@@ -80,6 +80,14 @@ pub fn all_pairs() -> v1::Subject {
     v1::Subject { kind: Some(v1::subject::Kind::AllPairs(v1::AllPairs {})) }
 }
 
+pub fn changed_since(revision: u64) -> v1::Subject {
+    v1::Subject { kind: Some(v1::subject::Kind::ChangedSince(v1::ChangedSince { revision })) }
+}
+
+pub fn watch() -> v1::WatchContactsRequest {
+    v1::WatchContactsRequest { context: Some(context()), threshold: 0, stays: false }
+}
+
 pub fn collide(items: Vec<v1::Subject>) -> v1::CollideRequest {
     v1::CollideRequest { context: Some(context()), items, mode: 0 }
 }

@@ -8,6 +8,19 @@ Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are 
 """
 
 from .answers import Applied, Bracket, Cost, ItemAnswer, PairAnswer, Side, StatesAnswer, Verdict
+from .casts import (
+    CastHit,
+    CastItem,
+    CastVerdict,
+    Grazed,
+    NearestItem,
+    OverlapItem,
+    RaysAnswer,
+    ball_region,
+    box_region,
+    moving,
+    shape_region,
+)
 from .client import DEFAULT_ADDRESS, Client, Scene
 from .edits import (
     add_body,
@@ -34,6 +47,7 @@ from .errors import (
     RevisionGone,
     Unavailable,
 )
+from .motions import MotionsAnswer, along
 from .poses import pose, pose_from_matrix, random_pose
 from .robots import Joint, Robot
 from .shapes import (
@@ -46,9 +60,11 @@ from .shapes import (
     cylinder,
     ellipsoid,
     half_space,
+    height_field,
     mesh,
     plane,
     point,
+    point_cloud,
     segment,
     sphere,
     triangle,
@@ -58,17 +74,25 @@ __all__ = [
     "Applied",
     "Bracket",
     "ClearanceError",
+    "CastHit",
+    "CastItem",
+    "CastVerdict",
     "Client",
     "DEFAULT_ADDRESS",
     "Conflict",
     "Cost",
     "DeadlineExceeded",
+    "Grazed",
     "InvalidRequest",
     "ItemAnswer",
     "Joint",
     "LimitExceeded",
+    "MotionsAnswer",
+    "NearestItem",
     "NotFound",
+    "OverlapItem",
     "PairAnswer",
+    "RaysAnswer",
     "RevisionGone",
     "Robot",
     "Scene",
@@ -79,9 +103,12 @@ __all__ = [
     "add_body",
     "add_robot",
     "allow_collision",
+    "along",
+    "ball_region",
     "ball_swept",
     "body",
     "box",
+    "box_region",
     "capsule",
     "compound",
     "cone",
@@ -90,12 +117,15 @@ __all__ = [
     "ellipsoid",
     "group",
     "half_space",
+    "height_field",
     "link",
     "mesh",
     "move_body",
     "move_robot",
+    "moving",
     "plane",
     "point",
+    "point_cloud",
     "pose",
     "pose_from_matrix",
     "random_pose",
@@ -105,6 +135,7 @@ __all__ = [
     "robot",
     "segment",
     "set_pair_margin",
+    "shape_region",
     "sphere",
     "triangle",
 ]

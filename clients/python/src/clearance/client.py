@@ -11,12 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .answers import Applied, ItemAnswer, StatesAnswer
+from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
 from .edits import BodyName, body_ref
+from . import motions as motion_messages
 from .errors import translated
+from .motions import MotionsAnswer
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_mode
+from .v1 import cast_pb2 as cast
 from .v1 import geometry_pb2 as geometry
+from .v1 import health_pb2
+from .v1 import motion_pb2 as motion
 from .v1 import query_pb2 as query
 from .v1 import robot_pb2, scene_pb2
 from .v1 import service_pb2 as service
@@ -65,10 +71,15 @@ class Client:
         with translated():
             return self._server.GetServerInfo(service.GetServerInfoRequest(), timeout=self._timeout)
 
-    def create_scene(self, name: str) -> Scene:
-        """A new, empty scene."""
+    def create_scene(self, name: str, *, broad_phase: str = "tree") -> Scene:
+        """A new, empty scene.
+
+        `broad_phase` says how bodies are found that meet: `tree`, `sweep_and_prune` or `exhaustive`. No answer depends
+        on it; docs/broad_phase.md says when which one is faster.
+        """
+        request = service.CreateSceneRequest(name=name, broad_phase=_broad_phase(broad_phase))
         with translated():
-            self._scenes.CreateScene(service.CreateSceneRequest(name=name), timeout=self._timeout)
+            self._scenes.CreateScene(request, timeout=self._timeout)
         return Scene(self, name)
 
     def scene(self, name: str) -> Scene:
@@ -154,11 +165,28 @@ class Scene:
         return Applied(answer.epoch, answer.revision, tuple(answer.added))
 
     def contents(self, *, revision: Optional[int] = None) -> scene_pb2.SceneContents:
-        """Bodies and robots of the newest revision, or of a given one."""
+        """Bodies and robots of the newest revision, or of a given one; of a large scene page by page, as one."""
         rule = query.RevisionRule(exactly=revision) if revision is not None else None
         request = service.GetSceneRequest(scene=self.name, revision=rule)
         with translated():
-            return self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+            contents = self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+            # The other pages are of the first one's state.
+            request.revision.CopyFrom(query.RevisionRule(exactly=contents.revision, epoch=contents.epoch))
+            while contents.bodies_left:
+                request.after_body = contents.bodies[-1].id
+                page = self._client._scenes.GetScene(request, timeout=self._client._timeout).scene
+                contents.bodies.extend(page.bodies)
+                contents.bodies_left = page.bodies_left
+        return contents
+
+    def health(self, *, against_rebuilt: bool = False) -> health_pb2.SceneHealth:
+        """What the scene and its kept revisions hold in memory, and how good its broad phase is just now.
+
+        With `against_rebuilt` a tree of the same boxes is built to compare with: `tree.rebuilt_surface_cost`.
+        """
+        request = health_pb2.GetSceneHealthRequest(scene=self.name, against_rebuilt=against_rebuilt)
+        with translated():
+            return self._client._scenes.GetSceneHealth(request, timeout=self._client._timeout).health
 
     def delete(self) -> None:
         """The scene is gone."""
@@ -218,6 +246,127 @@ class Scene:
         _check_count(positions, len(answer.items))
         return [ItemAnswer.of(item) for item in answer.items]
 
+    def check_motions(
+        self,
+        robot: str,
+        starts: ArrayLike,
+        goals: ArrayLike,
+        *,
+        first_contact: bool = True,
+        stop_at_first: bool = False,
+        resolution: Optional[float] = None,
+        max_states: Optional[int] = None,
+        margin: float = 0.0,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> MotionsAnswer:
+        """Is the robot free all along these motions? Proved between states, not sampled.
+
+        `starts` and `goals` have shape (n, degrees of freedom); radians, metres for sliding joints. A motion is the straight
+        line between them in every number, and joints without limits are not wrapped. With `first_contact=False` a motion
+        that collides is left as soon as a contact is met, and its bracket is wide. `resolution` is how little a pair may
+        move, in metres, before what is not proved is left undecided; `max_states` how many states a motion is looked at in.
+        """
+        request = motion.CheckMotionsRequest(
+            context=self._context("verdict", margin, None, "default", at_least),
+            robot=robot,
+            positions=motion_messages.edges(starts, goals),
+            mode=motion_messages.mode(stop_at_first),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+        request.context.answer_form = query.ANSWER_FORM_BULK
+        with translated():
+            response = self._client._queries.CheckMotions(request, timeout=timeout or self._client._timeout)
+        answer = MotionsAnswer.of(response)
+        _check_count(starts, len(answer.verdicts))
+        return answer
+
+    def check_path(
+        self,
+        robot: str,
+        waypoints: ArrayLike,
+        *,
+        first_contact: bool = True,
+        stop_at_first: bool = True,
+        resolution: Optional[float] = None,
+        max_states: Optional[int] = None,
+        margin: float = 0.0,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> MotionsAnswer:
+        """Is the robot free all along a path? As :meth:`check_motions`, from each waypoint to the next.
+
+        `waypoints` has shape (n + 1, degrees of freedom); the answer has n elements, and `stopped_at` is the first that is
+        blocked.
+        """
+        request = motion.CheckPathRequest(
+            context=self._context("verdict", margin, None, "default", at_least),
+            robot=robot,
+            waypoints=motion_messages.doubles(waypoints, "waypoints", "(n, degrees of freedom)", 2),
+            mode=motion_messages.mode(stop_at_first),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+        request.context.answer_form = query.ANSWER_FORM_BULK
+        with translated():
+            response = self._client._queries.CheckPath(request, timeout=timeout or self._client._timeout)
+        answer = MotionsAnswer.of(response)
+        if len(answer.verdicts) != max(len(np.asarray(waypoints)) - 1, 0):
+            raise ValueError(f"waypoints: {np.shape(waypoints)[1]} numbers a waypoint do not fit the robot")
+        return answer
+
+    def clearance(
+        self,
+        within: float,
+        *subjects: Subject,
+        want: str = "distance",
+        margin: float = 0.0,
+        max_pairs: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[ItemAnswer]:
+        """Which bodies are within that many metres of each subject? Each answer's `pairs` has them all, with their brackets.
+
+        Without subjects: which pairs of all bodies are that near.
+        """
+        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request.items.items.extend(_subjects(subjects))
+        return self._clearance(request, timeout)
+
+    def clearance_of_states(
+        self,
+        robot: str,
+        positions: ArrayLike,
+        within: float,
+        *,
+        want: str = "distance",
+        margin: float = 0.0,
+        max_pairs: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[ItemAnswer]:
+        """Which pairs of links, and of links and bodies, are within that many metres in each state?"""
+        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request.states.robot = robot
+        request.states.positions.CopyFrom(
+            motion_messages.doubles(positions, "positions", "(n, degrees of freedom)", 2)
+        )
+        answers = self._clearance(request, timeout)
+        _check_count(positions, len(answers))
+        return answers
+
+    def _clearance_request(
+        self, within: float, want: str, margin: float, max_pairs: Optional[int], at_least: Optional[int]
+    ) -> motion.ClearanceRequest:
+        context = self._context(want, margin, None, "default", at_least)
+        if max_pairs is not None:
+            context.max_pairs = max_pairs
+        return motion.ClearanceRequest(context=context, within=within)
+
+    def _clearance(self, request: motion.ClearanceRequest, timeout: Optional[float]) -> list[ItemAnswer]:
+        with translated():
+            answer = self._client._queries.Clearance(request, timeout=timeout or self._client._timeout).answer
+        return [ItemAnswer.of(item) for item in answer.items]
+
     def distance(
         self,
         *subjects: Subject,
@@ -250,6 +399,116 @@ class Scene:
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
         return [ItemAnswer.of(item) for item in answer.items]
+
+    def cast_rays(
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        *,
+        length: ArrayLike = 1e6,
+        mode: str = "first",
+        margin: float = 0.0,
+        ignore: Sequence[BodyName] = (),
+        max_hits: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> RaysAnswer:
+        """What does each ray meet?
+
+        `origins` and `directions` have shape (n, 3), or one origin for all; directions may have any length but zero. `length`, in metres, is one
+        number or one for each ray. `mode` is `first`, `all` (up to `max_hits` a ray) or `any` (only whether there is a hit, which is the
+        quickest). A `margin` makes rays thick.
+        """
+        context = self._cast_context("verdict", margin, None, ignore, max_hits, at_least)
+        request = rays_request(context, origins, directions, length, mode)
+        with translated():
+            return RaysAnswer.of(self._client._queries.CastRays(request, timeout=timeout or self._client._timeout))
+
+    def cast_shapes(
+        self,
+        *movers: cast.Mover,
+        mode: str = "first",
+        margin: float = 0.0,
+        resolution: Optional[float] = None,
+        ignore: Sequence[BodyName] = (),
+        max_hits: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[CastItem]:
+        """What does each moving shape or body (see :func:`moving`) meet, and when? All other bodies stay where they are."""
+        context = self._cast_context("verdict", margin, None, ignore, max_hits, at_least)
+        request = cast.CastShapesRequest(context=context, items=movers, mode=cast_mode(mode), resolution=resolution)
+        with translated():
+            answer = self._client._queries.CastShapes(request, timeout=timeout or self._client._timeout)
+        return [CastItem.of(item) for item in answer.items]
+
+    def check_moving_pairs(
+        self,
+        *pairs: tuple[cast.Mover, cast.Mover],
+        margin: float = 0.0,
+        resolution: Optional[float] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[CastItem]:
+        """When does each pair meet, of which both move?"""
+        context = self._cast_context("verdict", margin, None, (), None, at_least)
+        items = [cast.MovingPair(a=a, b=b) for a, b in pairs]
+        request = cast.CheckMovingPairsRequest(context=context, items=items, resolution=resolution)
+        with translated():
+            answer = self._client._queries.CheckMovingPairs(request, timeout=timeout or self._client._timeout)
+        return [CastItem.of(item) for item in answer.items]
+
+    def overlap(
+        self,
+        *regions: cast.Region,
+        bounds_only: bool = False,
+        margin: float = 0.0,
+        ignore: Sequence[BodyName] = (),
+        max_bodies: Optional[int] = None,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[OverlapItem]:
+        """Which bodies have a point in each region? With `bounds_only` those whose bounding boxes meet the region's: more, for less."""
+        context = self._cast_context("verdict", margin, None, ignore, max_bodies, at_least)
+        request = cast.OverlapRequest(context=context, items=regions, bounds_only=bounds_only)
+        with translated():
+            answer = self._client._queries.Overlap(request, timeout=timeout or self._client._timeout)
+        return [OverlapItem.of(item) for item in answer.items]
+
+    def nearest_bodies(
+        self,
+        *subjects: Subject,
+        count: int = 1,
+        want: str = "witness",
+        margin: float = 0.0,
+        cut_off: Optional[float] = None,
+        ignore: Sequence[BodyName] = (),
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> list[NearestItem]:
+        """Which `count` bodies are nearest to each subject, and is that proved?"""
+        if not subjects:
+            raise ValueError("subjects: needs at least one body or shape")
+        context = self._cast_context(want, margin, cut_off, ignore, None, at_least)
+        request = cast.NearestBodiesRequest(context=context, items=_subjects(subjects), count=count)
+        with translated():
+            answer = self._client._queries.NearestBodies(request, timeout=timeout or self._client._timeout)
+        return [NearestItem.of(item) for item in answer.items]
+
+    def _cast_context(
+        self,
+        want: str,
+        margin: float,
+        cut_off: Optional[float],
+        ignore: Sequence[BodyName],
+        most: Optional[int],
+        at_least: Optional[int],
+    ) -> query.Context:
+        context = self._context(want, margin, cut_off, "default", at_least)
+        context.filter.ignore.extend(body_ref(body) for body in ignore)
+        if most is not None:
+            context.max_pairs = most
+        return context
 
     def _context(
         self, want: str, margin: float, cut_off: Optional[float], solver: str, at_least: Optional[int]
@@ -294,6 +553,14 @@ def _wants(want: str) -> query.Wants:
     if want not in known:
         raise ValueError(f"want: is {want!r}, known are {', '.join(known)}")
     return known[want]
+
+
+def _broad_phase(name: str) -> scene_pb2.BroadPhase:
+    """`tree` is BROAD_PHASE_TREE."""
+    known = {key.removeprefix("BROAD_PHASE_").lower(): number for key, number in scene_pb2.BroadPhase.items() if number}
+    if name not in known:
+        raise ValueError(f"broad_phase: is {name!r}, known are {', '.join(known)}")
+    return known[name]
 
 
 def _solver(name: str) -> query.Solver:

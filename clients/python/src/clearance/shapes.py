@@ -5,10 +5,10 @@ Every shape may be grown by a ball: `ball_swept(box([1, 1, 1]), 0.1)`.
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .poses import Vector, vec3
 from .v1 import geometry_pb2 as geometry
@@ -82,6 +82,30 @@ def compound(parts: Sequence[tuple[Shape, geometry.Pose]]) -> Shape:
     return Shape(compound=geometry.Compound(parts=[geometry.Part(shape=s, pose=p) for s, p in parts]))
 
 
+def height_field(heights: ArrayLike, spacing: Sequence[float], floor: float) -> Shape:
+    """Terrain, solid from its surface down to `floor`.
+
+    `heights[row, column]` is the z of the sample at `x = column * spacing[0]`, `y = row * spacing[1]`. An array of float32 is sent as it is,
+    in half the bytes.
+    """
+    array = np.asarray(heights)
+    if array.ndim != 2:
+        raise ValueError(f"heights: needs shape (rows, columns), has {array.shape}")
+    if len(spacing) != 2:
+        raise ValueError(f"spacing: needs 2 numbers, has {len(spacing)}")
+    rows, columns = array.shape
+    x, y = spacing
+    message = geometry.HeightField(
+        rows=rows, columns=columns, spacing_x=x, spacing_y=y, heights=_numbers("heights", array), floor=floor
+    )
+    return Shape(height_field=message)
+
+
+def point_cloud(points: ArrayLike, radius: float = 0.0) -> Shape:
+    """The union of balls of `radius` around `points`, shape (n, 3). An array of float32 is sent in half the bytes."""
+    return Shape(point_cloud=geometry.PointCloud(points=_numbers("points", _triples("points", points)), radius=radius))
+
+
 def segment(a: Vector, b: Vector) -> Shape:
     return Shape(segment=geometry.Segment(a=vec3("a", a), b=vec3("b", b)))
 
@@ -109,7 +133,21 @@ def ball_swept(shape: Shape, radius: float) -> Shape:
 
 
 def _points(name: str, values: ArrayLike) -> list[geometry.Vec3]:
-    array = np.asarray(values, dtype=float)
+    array = _triples(name, values).astype(float)
+    return [geometry.Vec3(x=x, y=y, z=z) for x, y, z in array.tolist()]
+
+
+def _triples(name: str, values: ArrayLike) -> NDArray[Any]:
+    array = np.asarray(values)
     if array.ndim != 2 or array.shape[1] != 3:
         raise ValueError(f"{name}: needs shape (n, 3), has {array.shape}")
-    return [geometry.Vec3(x=x, y=y, z=z) for x, y, z in array.tolist()]
+    return array
+
+
+def _numbers(name: str, array: NDArray[Any]) -> geometry.Numbers:
+    """Numbers row by row, as bytes."""
+    if not (np.issubdtype(array.dtype, np.floating) or np.issubdtype(array.dtype, np.integer)):
+        raise ValueError(f"{name}: needs numbers, has {array.dtype}")
+    if array.dtype.kind == "f" and array.dtype.itemsize == 4:
+        return geometry.Numbers(little_endian_f32=array.astype("<f4").tobytes())
+    return geometry.Numbers(little_endian=array.astype("<f8").tobytes())

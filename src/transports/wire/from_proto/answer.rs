@@ -11,6 +11,12 @@ use crate::transports::wire::v1;
 #[error("the answer's field `{0}` is missing or unknown to this version")]
 pub struct NotAnAnswer(&'static str);
 
+impl NotAnAnswer {
+    pub(super) fn missing(field: &'static str) -> Self {
+        Self(field)
+    }
+}
+
 /// An answer in the form of items.
 ///
 /// # Errors
@@ -35,6 +41,7 @@ fn item(item: &v1::ItemAnswer) -> Result<ItemAnswer, NotAnAnswer> {
         pairs: item.pairs.iter().map(pair).collect::<Result<_, _>>()?,
         problem: (!item.problem.is_empty()).then(|| item.problem.clone()),
         truncated: item.truncated,
+        motion: None, // Motions come beside the items: `from_proto::motions`.
         cost: cost(item.cost)?,
     })
 }
@@ -78,6 +85,7 @@ fn indeterminacy(number: i32) -> Result<Indeterminacy, NotAnAnswer> {
         Ok(v1::Indeterminacy::Rounding) => Ok(Indeterminacy::Rounding),
         Ok(v1::Indeterminacy::IterationLimit) => Ok(Indeterminacy::IterationLimit),
         Ok(v1::Indeterminacy::TimeLimit) => Ok(Indeterminacy::TimeLimit),
+        Ok(v1::Indeterminacy::Resolution) => Ok(Indeterminacy::Resolution),
         Ok(v1::Indeterminacy::Unspecified) | Err(_) => Err(NotAnAnswer("indeterminacy")),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Path;
+use super::{Path, fields};
 use crate::geometry::mesh_file::MeshFormat;
 use crate::geometry::tolerance::LARGEST_LENGTH;
 use crate::geometry::{
@@ -33,11 +33,11 @@ pub fn pose(path: &Path<'_>, pose: Option<&v1::Pose>) -> Result<Pose, ServiceErr
 }
 
 /// A point or direction; the numbers are checked where they are used.
-fn vec3(v: &v1::Vec3) -> Vec3 {
+pub(super) fn vec3(v: &v1::Vec3) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
+pub(super) fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
     path.required(v).map(vec3)
 }
 
@@ -77,6 +77,8 @@ fn core(path: &Path<'_>, core: Option<&v1::shape::Core>, library: &Library) -> R
         Core::Mesh(mesh) => return inline_mesh(&path.field("mesh"), mesh, limits),
         Core::MeshAsset(asset) => return mesh_asset(&path.field("mesh_asset"), asset, library),
         Core::Compound(compound) => return self::compound(&path.field("compound"), compound, library),
+        Core::HeightField(field) => return fields::height_field(&path.field("height_field"), field, library),
+        Core::PointCloud(cloud) => return fields::point_cloud(&path.field("point_cloud"), cloud, library),
         Core::Point(v1::Point {}) => return Ok(Shape::point()),
         Core::Segment(segment) => {
             let path = path.field("segment");
@@ -187,7 +189,7 @@ pub fn mesh_format(path: &Path<'_>, number: i32) -> Result<Option<MeshFormat>, S
 }
 
 /// Puts what a shape says of its own field behind the path of the shape.
-fn refused(path: &Path<'_>, error: &InvalidShape) -> ServiceError {
+pub(super) fn refused(path: &Path<'_>, error: &InvalidShape) -> ServiceError {
     let text = error.to_string();
     let inner = match error {
         InvalidShape::NotFinite { field }
@@ -195,7 +197,12 @@ fn refused(path: &Path<'_>, error: &InvalidShape) -> ServiceError {
         | InvalidShape::TooLarge { field, .. }
         | InvalidShape::NotAllowed { field, .. }
         | InvalidShape::Pose { field, .. } => field.clone(),
-        InvalidShape::Empty { field } => (*field).to_owned(),
+        InvalidShape::Empty { field }
+        | InvalidShape::NotPositive { field, .. }
+        | InvalidShape::TooFew { field, .. }
+        | InvalidShape::TooMany { field, .. }
+        | InvalidShape::WrongCount { field, .. } => (*field).to_owned(),
+        InvalidShape::BelowFloor { sample, .. } => format!("heights[{sample}]"),
         InvalidShape::ZeroNormal => "normal".to_owned(),
         InvalidShape::BadIndex { triangle, .. } => format!("triangles[{triangle}]"),
         InvalidShape::Part { part, .. } => format!("parts[{part}]"),

@@ -2,15 +2,22 @@
 //! a checked value or an error that names the field.
 
 mod answer;
+mod cast;
+mod contact;
+mod fields;
 mod geometry;
+mod motion;
 mod path;
 mod query;
 mod robot;
 mod scene;
 
 pub use answer::{NotAnAnswer, answer};
+pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
+pub use contact::contact_question;
+pub use motion::{check_motions, check_path, clearance, motions};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
-pub use scene::change;
+pub use scene::{BodyPage, body_page, change, scene_options};
 
 use path::Path;

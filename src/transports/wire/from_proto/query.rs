@@ -110,27 +110,44 @@ fn pair_query(
     snapshot: &Snapshot,
     library: &Library,
 ) -> Result<PairQuery, ServiceError> {
-    let subject = |(index, item): (usize, &v1::Subject)| {
-        let path = Path::root_item("items", index);
-        match path.required(item.kind.as_ref())? {
-            v1::subject::Kind::AllPairs(v1::AllPairs {}) => Ok(Subject::All),
-            v1::subject::Kind::Body(body) => Ok(Subject::Body(body_id(&path.field("body"), Some(body), snapshot)?)),
-            v1::subject::Kind::Shape(placed) => {
-                let path = path.field("shape");
-                let shape = geometry::shape(&path.field("shape"), placed.shape.as_ref(), library)?;
-                Ok(Subject::Shape { shape, pose: geometry::pose(&path.field("pose"), placed.pose.as_ref())? })
-            }
-        }
-    };
     Ok(PairQuery {
-        items: items.iter().enumerate().map(subject).collect::<Result<_, ServiceError>>()?,
+        items: subjects(items, snapshot, library)?,
         mode: mode(mode_number)?,
         context: context(context_message, snapshot)?,
     })
 }
 
+/// What is held against the scene, item by item.
+pub(super) fn subjects(
+    items: &[v1::Subject],
+    snapshot: &Snapshot,
+    library: &Library,
+) -> Result<Vec<Subject>, ServiceError> {
+    let subject = |(index, item)| subject(&Path::root_item("items", index), item, snapshot, library);
+    items.iter().enumerate().map(subject).collect()
+}
+
+/// What a question is about.
+pub(super) fn subject(
+    path: &Path<'_>,
+    item: &v1::Subject,
+    snapshot: &Snapshot,
+    library: &Library,
+) -> Result<Subject, ServiceError> {
+    match path.required(item.kind.as_ref())? {
+        v1::subject::Kind::AllPairs(v1::AllPairs {}) => Ok(Subject::All),
+        v1::subject::Kind::ChangedSince(since) => Ok(Subject::ChangedSince(Revision(since.revision))),
+        v1::subject::Kind::Body(body) => Ok(Subject::Body(body_id(&path.field("body"), Some(body), snapshot)?)),
+        v1::subject::Kind::Shape(placed) => {
+            let path = path.field("shape");
+            let shape = geometry::shape(&path.field("shape"), placed.shape.as_ref(), library)?;
+            Ok(Subject::Shape { shape, pose: geometry::pose(&path.field("pose"), placed.pose.as_ref())? })
+        }
+    }
+}
+
 /// What every question carries; the numbers in it are checked by the query itself.
-fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
+pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Result<Context, ServiceError> {
     let path = Path::root("context");
     let context = path.required(context)?;
     let wants = context.wants.unwrap_or_default();
@@ -178,7 +195,11 @@ fn filter(path: &Path<'_>, filter: Option<&v1::Filter>, snapshot: &Snapshot) -> 
 }
 
 /// A body's id; whether it is there, if it came as an id, is for the query to see.
-fn body_id(path: &Path<'_>, body: Option<&v1::BodyRef>, snapshot: &Snapshot) -> Result<BodyId, ServiceError> {
+pub(super) fn body_id(
+    path: &Path<'_>,
+    body: Option<&v1::BodyRef>,
+    snapshot: &Snapshot,
+) -> Result<BodyId, ServiceError> {
     let by = body.and_then(|body| body.by.as_ref());
     match path.required(by)? {
         v1::body_ref::By::Id(id) => Ok(BodyId(*id)),
@@ -189,7 +210,7 @@ fn body_id(path: &Path<'_>, body: Option<&v1::BodyRef>, snapshot: &Snapshot) -> 
     }
 }
 
-fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, ServiceError> {
+pub(super) fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, ServiceError> {
     match path.required(doubles.and_then(|doubles| doubles.form.as_ref()))? {
         v1::doubles::Form::Packed(packed) => Ok(packed.values.clone()),
         v1::doubles::Form::LittleEndian(bytes) => {
@@ -203,7 +224,7 @@ fn doubles(path: &Path<'_>, doubles: Option<&v1::Doubles>) -> Result<Vec<f64>, S
     }
 }
 
-fn mode(number: i32) -> Result<Mode, ServiceError> {
+pub(super) fn mode(number: i32) -> Result<Mode, ServiceError> {
     match v1::Mode::try_from(number) {
         Ok(v1::Mode::Unspecified | v1::Mode::All) => Ok(Mode::All),
         Ok(v1::Mode::StopAtFirst) => Ok(Mode::StopAtFirst),
@@ -211,6 +232,6 @@ fn mode(number: i32) -> Result<Mode, ServiceError> {
     }
 }
 
-fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
+pub(super) fn unknown_value(path: &Path<'_>, number: i32) -> ServiceError {
     path.invalid(format!("has the unknown value {number}"))
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use prost::Message;
 
 use super::{Path, geometry};
-use crate::limits::LimitExceeded;
-use crate::scene::{BodyId, BodyRef, Edit, Epoch, NewBody, Party, Revision};
+use crate::limits::{LimitExceeded, Limits};
+use crate::scene::{BodyId, BodyRef, BroadPhaseKind, Edit, Epoch, NewBody, Party, Revision, SceneOptions};
 use crate::service::{Change, ContentHash, IdempotencyKey, Library, Robots, ServiceError};
 use crate::transports::wire::v1;
 
@@ -25,6 +25,40 @@ pub fn change(request: &v1::ApplyRequest, library: &Library, robots: &Robots) ->
         expected_revision: request.expected_revision.map(Revision),
         key: idempotency_key(request),
     })
+}
+
+/// What is chosen when a scene is made.
+///
+/// # Errors
+/// A broad phase that this version does not know.
+pub fn scene_options(request: &v1::CreateSceneRequest) -> Result<SceneOptions, ServiceError> {
+    let number = request.broad_phase;
+    let broad_phase = match v1::BroadPhase::try_from(number) {
+        Ok(v1::BroadPhase::Unspecified | v1::BroadPhase::Tree) => BroadPhaseKind::Tree,
+        Ok(v1::BroadPhase::SweepAndPrune) => BroadPhaseKind::SweepAndPrune,
+        Ok(v1::BroadPhase::Exhaustive) => BroadPhaseKind::Exhaustive,
+        Err(_) => return Err(Path::root("broad_phase").invalid(format!("has the unknown value {number}"))),
+    };
+    Ok(SceneOptions { broad_phase })
+}
+
+/// Which bodies of a scene are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyPage {
+    /// Those with ids above this.
+    pub after: BodyId,
+    /// At most so many.
+    pub most: usize,
+}
+
+/// Which bodies of a scene are asked for.
+///
+/// # Errors
+/// More than the cap allows.
+pub fn body_page(request: &v1::GetSceneRequest, limits: &Limits) -> Result<BodyPage, ServiceError> {
+    let most = request.max_bodies.map_or(limits.max_bodies_listed, |most| most as usize);
+    LimitExceeded::check("max_bodies_listed", most, limits.max_bodies_listed)?;
+    Ok(BodyPage { after: BodyId(request.after_body), most })
 }
 
 /// The same edits have the same bytes: protobuf's encoder writes fields in order.

@@ -79,7 +79,7 @@ fn bulk_brackets(
     })
 }
 
-fn pair(pair: &PairAnswer) -> v1::PairAnswer {
+pub(super) fn pair(pair: &PairAnswer) -> v1::PairAnswer {
     let (verdict, indeterminacy) = verdict(pair.verdict);
     v1::PairAnswer {
         a: Some(side(&pair.a)),
@@ -103,7 +103,7 @@ fn side(side: &Side) -> v1::Side {
 }
 
 /// A verdict and, if it is none, why.
-fn verdict(verdict: Verdict) -> (v1::Verdict, v1::Indeterminacy) {
+pub(super) fn verdict(verdict: Verdict) -> (v1::Verdict, v1::Indeterminacy) {
     let decided = |verdict| (verdict, v1::Indeterminacy::Unspecified);
     match verdict {
         Verdict::Free => decided(v1::Verdict::Free),
@@ -115,11 +115,12 @@ fn verdict(verdict: Verdict) -> (v1::Verdict, v1::Indeterminacy) {
     }
 }
 
-fn indeterminacy(why: Indeterminacy) -> v1::Indeterminacy {
+pub(super) fn indeterminacy(why: Indeterminacy) -> v1::Indeterminacy {
     match why {
         Indeterminacy::Rounding => v1::Indeterminacy::Rounding,
         Indeterminacy::IterationLimit => v1::Indeterminacy::IterationLimit,
         Indeterminacy::TimeLimit => v1::Indeterminacy::TimeLimit,
+        Indeterminacy::Resolution => v1::Indeterminacy::Resolution,
     }
 }
 
@@ -149,7 +150,7 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
     v1::Bracket { lower: bracket.lower, upper: bracket.upper }
 }
 
-fn cost(cost: Cost) -> v1::Cost {
+pub(super) fn cost(cost: Cost) -> v1::Cost {
     let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = cost;
     v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }
 }

@@ -1,6 +1,6 @@
 //! Shapes and poses.
 
-use crate::geometry::{Aabb, Core, Part, Pose, Shape, TriangleMesh, Vec3};
+use crate::geometry::{Aabb, Core, HeightField, Part, Pose, Shape, TriangleMesh, Vec3};
 use crate::transports::wire::v1;
 
 pub(super) fn vec3(v: Vec3) -> v1::Vec3 {
@@ -48,8 +48,33 @@ pub fn shape(shape: &Shape) -> v1::Shape {
             let part = |part: &Part| v1::Part { shape: Some(self::shape(&part.shape)), pose: Some(pose(&part.pose)) };
             Wire::Compound(v1::Compound { parts: compound.parts().iter().map(part).collect() })
         }
+        Core::HeightField(field) => Wire::HeightField(height_field(field)),
+        // The balls of a cloud are its swept radius.
+        Core::PointCloud(cloud) => {
+            let points = numbers(cloud.as_given().iter().flatten());
+            Wire::PointCloud(v1::PointCloud { points: Some(points), radius: 0.0 })
+        }
+        Core::Column(column) => Wire::Convex(v1::Convex { points: column.corners().map(vec3).into() }),
     };
     v1::Shape { swept_radius, core: Some(core) }
+}
+
+fn height_field(field: &HeightField) -> v1::HeightField {
+    let grid = field.grid();
+    let [spacing_x, spacing_y] = grid.spacing;
+    v1::HeightField {
+        rows: grid.rows,
+        columns: grid.columns,
+        spacing_x,
+        spacing_y,
+        heights: Some(numbers(field.heights())),
+        floor: Some(field.floor()),
+    }
+}
+
+fn numbers<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> v1::Numbers {
+    let bytes = numbers.into_iter().flat_map(|number| number.to_le_bytes()).collect();
+    v1::Numbers { form: Some(v1::numbers::Form::LittleEndian(bytes)) }
 }
 
 fn mesh(mesh: &TriangleMesh) -> v1::Mesh {

@@ -1,14 +1,24 @@
 //! What does something look like on the wire? Every conversion from plain structs to messages; none can fail.
 
 mod answer;
+mod cast;
+mod contact;
 mod count;
 mod geometry;
+mod health;
+mod motion;
 mod question;
 mod robot;
 mod scene;
 
 pub use answer::answer;
+pub use cast::{
+    cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
+};
+pub use contact::contact_messages;
 pub use geometry::{pose, shape};
+pub use health::scene_health;
+pub use motion::{check_motions_request, check_path_request, clearance_request, motions};
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};
 pub use scene::{add_body, apply_response, body_ref, door, limit, scene_contents, scene_summary};

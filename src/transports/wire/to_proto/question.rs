@@ -10,11 +10,10 @@ use crate::transports::wire::v1;
 /// Joint positions go as little-endian bytes, the quickest form.
 #[must_use]
 pub fn check_states_request(target: &Target, question: &CheckStates) -> v1::CheckStatesRequest {
-    let bytes: Vec<u8> = question.positions.iter().copied().flat_map(f64::to_le_bytes).collect();
     v1::CheckStatesRequest {
         context: Some(context(target, &question.context)),
         robot: question.robot.clone(),
-        positions: Some(v1::Doubles { form: Some(v1::doubles::Form::LittleEndian(bytes.into())) }),
+        positions: Some(doubles(&question.positions)),
         mode: mode(question.mode).into(),
     }
 }
@@ -39,7 +38,12 @@ pub fn distance_request(target: &Target, question: &PairQuery) -> v1::DistanceRe
     }
 }
 
-fn context(target: &Target, context: &Context) -> v1::Context {
+pub(super) fn doubles(numbers: &[f64]) -> v1::Doubles {
+    let bytes: Vec<u8> = numbers.iter().copied().flat_map(f64::to_le_bytes).collect();
+    v1::Doubles { form: Some(v1::doubles::Form::LittleEndian(bytes.into())) }
+}
+
+pub(super) fn context(target: &Target, context: &Context) -> v1::Context {
     let Wants { distance, witness, depth, pairs } = context.wants;
     let (absolute, relative) = (context.accuracy.absolute, context.accuracy.relative);
     v1::Context {
@@ -91,9 +95,10 @@ fn filter(filter: &Filter) -> v1::Filter {
     }
 }
 
-fn subject(subject: &Subject) -> v1::Subject {
+pub(super) fn subject(subject: &Subject) -> v1::Subject {
     let kind = match subject {
         Subject::All => v1::subject::Kind::AllPairs(v1::AllPairs {}),
+        Subject::ChangedSince(since) => v1::subject::Kind::ChangedSince(v1::ChangedSince { revision: since.0 }),
         Subject::Body(id) => v1::subject::Kind::Body(v1::BodyRef { by: Some(v1::body_ref::By::Id(id.0)) }),
         Subject::Shape { shape: placed, pose: at } => {
             v1::subject::Kind::Shape(v1::PlacedShape { shape: Some(shape(placed)), pose: Some(pose(at)) })
@@ -102,7 +107,7 @@ fn subject(subject: &Subject) -> v1::Subject {
     v1::Subject { kind: Some(kind) }
 }
 
-fn mode(mode: Mode) -> v1::Mode {
+pub(super) fn mode(mode: Mode) -> v1::Mode {
     match mode {
         Mode::All => v1::Mode::All,
         Mode::StopAtFirst => v1::Mode::StopAtFirst,

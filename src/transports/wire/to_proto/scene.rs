@@ -5,8 +5,9 @@ use std::sync::Arc;
 use super::count;
 use super::geometry::{aabb, pose, shape};
 use crate::limits::Limit;
-use crate::scene::{Body, BodyRef, NewBody, Revision, RobotInScene, Snapshot};
+use crate::scene::{Body, BodyRef, BroadPhaseKind, NewBody, Revision, RobotInScene, Snapshot};
 use crate::service::{Changed, Door, Robots, SceneSummary};
+use crate::transports::wire::from_proto::BodyPage;
 use crate::transports::wire::v1;
 
 /// A scene in short.
@@ -18,12 +19,20 @@ pub fn scene_summary(summary: &SceneSummary) -> v1::SceneSummary {
         revision: summary.revision.0,
         bodies: count(summary.bodies),
         robots: count(summary.robots),
+        broad_phase: broad_phase(summary.broad_phase),
     }
 }
 
-/// Everything in one revision of a scene.
+/// A page of the bodies in one revision of a scene, and everything else in it.
 #[must_use]
-pub fn scene_contents(name: &str, snapshot: &Snapshot, oldest: Revision, robots: &Robots) -> v1::SceneContents {
+pub fn scene_contents(
+    name: &str,
+    snapshot: &Snapshot,
+    oldest: Revision,
+    robots: &Robots,
+    page: BodyPage,
+) -> v1::SceneContents {
+    let mut asked = snapshot.bodies_after(page.after);
     let robot = |robot: &Arc<RobotInScene>| v1::RobotInScene {
         name: robot.name.to_string(),
         model: robots.id_of(&robot.model).unwrap_or_default(),
@@ -34,9 +43,20 @@ pub fn scene_contents(name: &str, snapshot: &Snapshot, oldest: Revision, robots:
         epoch: snapshot.epoch().0,
         revision: snapshot.revision().0,
         oldest_revision: oldest.0,
-        bodies: snapshot.bodies().map(|b| body(b)).collect(),
+        bodies: asked.by_ref().take(page.most).map(|b| body(b)).collect(),
         robots: snapshot.robots().map(robot).collect(),
+        broad_phase: broad_phase(snapshot.broad_phase().kind()),
+        body_count: snapshot.body_count() as u64,
+        bodies_left: asked.next().is_some(),
     }
+}
+
+fn broad_phase(kind: BroadPhaseKind) -> i32 {
+    i32::from(match kind {
+        BroadPhaseKind::Tree => v1::BroadPhase::Tree,
+        BroadPhaseKind::SweepAndPrune => v1::BroadPhase::SweepAndPrune,
+        BroadPhaseKind::Exhaustive => v1::BroadPhase::Exhaustive,
+    })
 }
 
 fn body(body: &Body) -> v1::Body {

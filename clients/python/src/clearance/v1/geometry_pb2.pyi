@@ -83,8 +83,22 @@ class PackedDoubles(_message.Message):
     values: _containers.RepeatedScalarFieldContainer[float]
     def __init__(self, values: _Optional[_Iterable[float]] = ...) -> None: ...
 
+class Numbers(_message.Message):
+    __slots__ = ("packed", "little_endian", "little_endian_f32", "sha256", "sha256_f32")
+    PACKED_FIELD_NUMBER: _ClassVar[int]
+    LITTLE_ENDIAN_FIELD_NUMBER: _ClassVar[int]
+    LITTLE_ENDIAN_F32_FIELD_NUMBER: _ClassVar[int]
+    SHA256_FIELD_NUMBER: _ClassVar[int]
+    SHA256_F32_FIELD_NUMBER: _ClassVar[int]
+    packed: PackedDoubles
+    little_endian: bytes
+    little_endian_f32: bytes
+    sha256: str
+    sha256_f32: str
+    def __init__(self, packed: _Optional[_Union[PackedDoubles, _Mapping]] = ..., little_endian: _Optional[bytes] = ..., little_endian_f32: _Optional[bytes] = ..., sha256: _Optional[str] = ..., sha256_f32: _Optional[str] = ...) -> None: ...
+
 class Shape(_message.Message):
-    __slots__ = ("swept_radius", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "convex", "mesh", "mesh_asset", "compound", "point", "segment", "triangle", "half_space", "plane")
+    __slots__ = ("swept_radius", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "convex", "mesh", "mesh_asset", "compound", "point", "segment", "triangle", "half_space", "plane", "height_field", "point_cloud")
     SWEPT_RADIUS_FIELD_NUMBER: _ClassVar[int]
     SPHERE_FIELD_NUMBER: _ClassVar[int]
     BOX_FIELD_NUMBER: _ClassVar[int]
@@ -101,6 +115,8 @@ class Shape(_message.Message):
     TRIANGLE_FIELD_NUMBER: _ClassVar[int]
     HALF_SPACE_FIELD_NUMBER: _ClassVar[int]
     PLANE_FIELD_NUMBER: _ClassVar[int]
+    HEIGHT_FIELD_FIELD_NUMBER: _ClassVar[int]
+    POINT_CLOUD_FIELD_NUMBER: _ClassVar[int]
     swept_radius: float
     sphere: Sphere
     box: Box
@@ -117,7 +133,9 @@ class Shape(_message.Message):
     triangle: Triangle
     half_space: HalfSpace
     plane: Plane
-    def __init__(self, swept_radius: _Optional[float] = ..., sphere: _Optional[_Union[Sphere, _Mapping]] = ..., box: _Optional[_Union[Box, _Mapping]] = ..., capsule: _Optional[_Union[Capsule, _Mapping]] = ..., cylinder: _Optional[_Union[Cylinder, _Mapping]] = ..., cone: _Optional[_Union[Cone, _Mapping]] = ..., ellipsoid: _Optional[_Union[Ellipsoid, _Mapping]] = ..., convex: _Optional[_Union[Convex, _Mapping]] = ..., mesh: _Optional[_Union[Mesh, _Mapping]] = ..., mesh_asset: _Optional[_Union[MeshAsset, _Mapping]] = ..., compound: _Optional[_Union[Compound, _Mapping]] = ..., point: _Optional[_Union[Point, _Mapping]] = ..., segment: _Optional[_Union[Segment, _Mapping]] = ..., triangle: _Optional[_Union[Triangle, _Mapping]] = ..., half_space: _Optional[_Union[HalfSpace, _Mapping]] = ..., plane: _Optional[_Union[Plane, _Mapping]] = ...) -> None: ...
+    height_field: HeightField
+    point_cloud: PointCloud
+    def __init__(self, swept_radius: _Optional[float] = ..., sphere: _Optional[_Union[Sphere, _Mapping]] = ..., box: _Optional[_Union[Box, _Mapping]] = ..., capsule: _Optional[_Union[Capsule, _Mapping]] = ..., cylinder: _Optional[_Union[Cylinder, _Mapping]] = ..., cone: _Optional[_Union[Cone, _Mapping]] = ..., ellipsoid: _Optional[_Union[Ellipsoid, _Mapping]] = ..., convex: _Optional[_Union[Convex, _Mapping]] = ..., mesh: _Optional[_Union[Mesh, _Mapping]] = ..., mesh_asset: _Optional[_Union[MeshAsset, _Mapping]] = ..., compound: _Optional[_Union[Compound, _Mapping]] = ..., point: _Optional[_Union[Point, _Mapping]] = ..., segment: _Optional[_Union[Segment, _Mapping]] = ..., triangle: _Optional[_Union[Triangle, _Mapping]] = ..., half_space: _Optional[_Union[HalfSpace, _Mapping]] = ..., plane: _Optional[_Union[Plane, _Mapping]] = ..., height_field: _Optional[_Union[HeightField, _Mapping]] = ..., point_cloud: _Optional[_Union[PointCloud, _Mapping]] = ...) -> None: ...
 
 class Sphere(_message.Message):
     __slots__ = ("radius",)
@@ -202,6 +220,30 @@ class Part(_message.Message):
     shape: Shape
     pose: Pose
     def __init__(self, shape: _Optional[_Union[Shape, _Mapping]] = ..., pose: _Optional[_Union[Pose, _Mapping]] = ...) -> None: ...
+
+class HeightField(_message.Message):
+    __slots__ = ("rows", "columns", "spacing_x", "spacing_y", "heights", "floor")
+    ROWS_FIELD_NUMBER: _ClassVar[int]
+    COLUMNS_FIELD_NUMBER: _ClassVar[int]
+    SPACING_X_FIELD_NUMBER: _ClassVar[int]
+    SPACING_Y_FIELD_NUMBER: _ClassVar[int]
+    HEIGHTS_FIELD_NUMBER: _ClassVar[int]
+    FLOOR_FIELD_NUMBER: _ClassVar[int]
+    rows: int
+    columns: int
+    spacing_x: float
+    spacing_y: float
+    heights: Numbers
+    floor: float
+    def __init__(self, rows: _Optional[int] = ..., columns: _Optional[int] = ..., spacing_x: _Optional[float] = ..., spacing_y: _Optional[float] = ..., heights: _Optional[_Union[Numbers, _Mapping]] = ..., floor: _Optional[float] = ...) -> None: ...
+
+class PointCloud(_message.Message):
+    __slots__ = ("points", "radius")
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    RADIUS_FIELD_NUMBER: _ClassVar[int]
+    points: Numbers
+    radius: float
+    def __init__(self, points: _Optional[_Union[Numbers, _Mapping]] = ..., radius: _Optional[float] = ...) -> None: ...
 
 class Point(_message.Message):
     __slots__ = ()

@@ -50,6 +50,7 @@ class Indeterminacy(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     INDETERMINACY_ROUNDING: _ClassVar[Indeterminacy]
     INDETERMINACY_ITERATION_LIMIT: _ClassVar[Indeterminacy]
     INDETERMINACY_TIME_LIMIT: _ClassVar[Indeterminacy]
+    INDETERMINACY_RESOLUTION: _ClassVar[Indeterminacy]
 
 class Termination(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -88,6 +89,7 @@ INDETERMINACY_UNSPECIFIED: Indeterminacy
 INDETERMINACY_ROUNDING: Indeterminacy
 INDETERMINACY_ITERATION_LIMIT: Indeterminacy
 INDETERMINACY_TIME_LIMIT: Indeterminacy
+INDETERMINACY_RESOLUTION: Indeterminacy
 TERMINATION_UNSPECIFIED: Termination
 TERMINATION_CLOSED_FORM: Termination
 TERMINATION_CONVERGED: Termination
@@ -186,18 +188,26 @@ class CheckStatesRequest(_message.Message):
     def __init__(self, context: _Optional[_Union[Context, _Mapping]] = ..., robot: _Optional[str] = ..., positions: _Optional[_Union[_geometry_pb2.Doubles, _Mapping]] = ..., mode: _Optional[_Union[Mode, str]] = ...) -> None: ...
 
 class Subject(_message.Message):
-    __slots__ = ("all_pairs", "body", "shape")
+    __slots__ = ("all_pairs", "body", "shape", "changed_since")
     ALL_PAIRS_FIELD_NUMBER: _ClassVar[int]
     BODY_FIELD_NUMBER: _ClassVar[int]
     SHAPE_FIELD_NUMBER: _ClassVar[int]
+    CHANGED_SINCE_FIELD_NUMBER: _ClassVar[int]
     all_pairs: AllPairs
     body: _scene_pb2.BodyRef
     shape: PlacedShape
-    def __init__(self, all_pairs: _Optional[_Union[AllPairs, _Mapping]] = ..., body: _Optional[_Union[_scene_pb2.BodyRef, _Mapping]] = ..., shape: _Optional[_Union[PlacedShape, _Mapping]] = ...) -> None: ...
+    changed_since: ChangedSince
+    def __init__(self, all_pairs: _Optional[_Union[AllPairs, _Mapping]] = ..., body: _Optional[_Union[_scene_pb2.BodyRef, _Mapping]] = ..., shape: _Optional[_Union[PlacedShape, _Mapping]] = ..., changed_since: _Optional[_Union[ChangedSince, _Mapping]] = ...) -> None: ...
 
 class AllPairs(_message.Message):
     __slots__ = ()
     def __init__(self) -> None: ...
+
+class ChangedSince(_message.Message):
+    __slots__ = ("revision",)
+    REVISION_FIELD_NUMBER: _ClassVar[int]
+    revision: int
+    def __init__(self, revision: _Optional[int] = ...) -> None: ...
 
 class PlacedShape(_message.Message):
     __slots__ = ("shape", "pose")

@@ -1,11 +1,23 @@
 from clearance.v1 import geometry_pb2 as _geometry_pb2
 from google.protobuf.internal import containers as _containers
+from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
 from google.protobuf import message as _message
 from collections.abc import Iterable as _Iterable, Mapping as _Mapping
 from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
+
+class BroadPhase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    BROAD_PHASE_UNSPECIFIED: _ClassVar[BroadPhase]
+    BROAD_PHASE_TREE: _ClassVar[BroadPhase]
+    BROAD_PHASE_SWEEP_AND_PRUNE: _ClassVar[BroadPhase]
+    BROAD_PHASE_EXHAUSTIVE: _ClassVar[BroadPhase]
+BROAD_PHASE_UNSPECIFIED: BroadPhase
+BROAD_PHASE_TREE: BroadPhase
+BROAD_PHASE_SWEEP_AND_PRUNE: BroadPhase
+BROAD_PHASE_EXHAUSTIVE: BroadPhase
 
 class BodyRef(_message.Message):
     __slots__ = ("id", "name")
@@ -186,18 +198,20 @@ class SetPairMargin(_message.Message):
     def __init__(self, a: _Optional[_Union[Party, _Mapping]] = ..., b: _Optional[_Union[Party, _Mapping]] = ..., margin: _Optional[float] = ...) -> None: ...
 
 class SceneSummary(_message.Message):
-    __slots__ = ("name", "epoch", "revision", "bodies", "robots")
+    __slots__ = ("name", "epoch", "revision", "bodies", "robots", "broad_phase")
     NAME_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     BODIES_FIELD_NUMBER: _ClassVar[int]
     ROBOTS_FIELD_NUMBER: _ClassVar[int]
+    BROAD_PHASE_FIELD_NUMBER: _ClassVar[int]
     name: str
     epoch: int
     revision: int
     bodies: int
     robots: int
-    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., bodies: _Optional[int] = ..., robots: _Optional[int] = ...) -> None: ...
+    broad_phase: BroadPhase
+    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., bodies: _Optional[int] = ..., robots: _Optional[int] = ..., broad_phase: _Optional[_Union[BroadPhase, str]] = ...) -> None: ...
 
 class Body(_message.Message):
     __slots__ = ("id", "name", "shape_kind", "pose", "groups", "layers", "mask", "bounds", "scale", "padding", "enabled")
@@ -236,17 +250,23 @@ class RobotInScene(_message.Message):
     def __init__(self, name: _Optional[str] = ..., model: _Optional[str] = ..., base: _Optional[_Union[_geometry_pb2.Pose, _Mapping]] = ...) -> None: ...
 
 class SceneContents(_message.Message):
-    __slots__ = ("name", "epoch", "revision", "oldest_revision", "bodies", "robots")
+    __slots__ = ("name", "epoch", "revision", "oldest_revision", "bodies", "robots", "broad_phase", "body_count", "bodies_left")
     NAME_FIELD_NUMBER: _ClassVar[int]
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     OLDEST_REVISION_FIELD_NUMBER: _ClassVar[int]
     BODIES_FIELD_NUMBER: _ClassVar[int]
     ROBOTS_FIELD_NUMBER: _ClassVar[int]
+    BROAD_PHASE_FIELD_NUMBER: _ClassVar[int]
+    BODY_COUNT_FIELD_NUMBER: _ClassVar[int]
+    BODIES_LEFT_FIELD_NUMBER: _ClassVar[int]
     name: str
     epoch: int
     revision: int
     oldest_revision: int
     bodies: _containers.RepeatedCompositeFieldContainer[Body]
     robots: _containers.RepeatedCompositeFieldContainer[RobotInScene]
-    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., oldest_revision: _Optional[int] = ..., bodies: _Optional[_Iterable[_Union[Body, _Mapping]]] = ..., robots: _Optional[_Iterable[_Union[RobotInScene, _Mapping]]] = ...) -> None: ...
+    broad_phase: BroadPhase
+    body_count: int
+    bodies_left: bool
+    def __init__(self, name: _Optional[str] = ..., epoch: _Optional[int] = ..., revision: _Optional[int] = ..., oldest_revision: _Optional[int] = ..., bodies: _Optional[_Iterable[_Union[Body, _Mapping]]] = ..., robots: _Optional[_Iterable[_Union[RobotInScene, _Mapping]]] = ..., broad_phase: _Optional[_Union[BroadPhase, str]] = ..., body_count: _Optional[int] = ..., bodies_left: bool = ...) -> None: ...

@@ -22,84 +22,88 @@ _runtime_version.ValidateProtobufRuntimeVersion(
 _sym_db = _symbol_database.Default()
 
 
+from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
+from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
+from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
+from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import scene_pb2 as clearance_dot_v1_dot_scene__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\"\"\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"N\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\xe9\x03\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x32\x8e\x03\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse2\xa3\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x32\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\xf0\x01\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse2b\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x19\x63learance/v1/health.proto\x1a\x17\x63learance/v1/cast.proto\x1a\x1a\x63learance/v1/contact.proto\x1a\x19\x63learance/v1/motion.proto\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\"Q\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12-\n\x0b\x62road_phase\x18\x02 \x01(\x0e\x32\x18.clearance.v1.BroadPhase\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x8a\x01\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\x12\x17\n\nmax_bodies\x18\x03 \x01(\rH\x00\x88\x01\x01\x12\x12\n\nafter_body\x18\x04 \x01(\x04\x42\r\n\x0b_max_bodies\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\xe9\x03\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x32\xeb\x03\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12[\n\x0eGetSceneHealth\x12#.clearance.v1.GetSceneHealthRequest\x1a$.clearance.v1.GetSceneHealthResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse2\xa3\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x32\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\xe0\x07\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse\x12I\n\x08\x43\x61stRays\x12\x1d.clearance.v1.CastRaysRequest\x1a\x1e.clearance.v1.CastRaysResponse\x12O\n\nCastShapes\x12\x1f.clearance.v1.CastShapesRequest\x1a .clearance.v1.CastShapesResponse\x12\x61\n\x10\x43heckMovingPairs\x12%.clearance.v1.CheckMovingPairsRequest\x1a&.clearance.v1.CheckMovingPairsResponse\x12\x46\n\x07Overlap\x12\x1c.clearance.v1.OverlapRequest\x1a\x1d.clearance.v1.OverlapResponse\x12X\n\rNearestBodies\x12\".clearance.v1.NearestBodiesRequest\x1a#.clearance.v1.NearestBodiesResponse\x12Z\n\rWatchContacts\x12\".clearance.v1.WatchContactsRequest\x1a#.clearance.v1.WatchContactsResponse0\x01\x12U\n\x0c\x43heckMotions\x12!.clearance.v1.CheckMotionsRequest\x1a\".clearance.v1.CheckMotionsResponse\x12L\n\tCheckPath\x12\x1e.clearance.v1.CheckPathRequest\x1a\x1f.clearance.v1.CheckPathResponse\x12L\n\tClearance\x12\x1e.clearance.v1.ClearanceRequest\x1a\x1f.clearance.v1.ClearanceResponse2b\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'clearance.v1.service_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_ERRORREASON']._serialized_start=1875
-  _globals['_ERRORREASON']._serialized_end=2364
-  _globals['_CREATESCENEREQUEST']._serialized_start=122
-  _globals['_CREATESCENEREQUEST']._serialized_end=156
-  _globals['_CREATESCENERESPONSE']._serialized_start=158
-  _globals['_CREATESCENERESPONSE']._serialized_end=222
-  _globals['_LISTSCENESREQUEST']._serialized_start=224
-  _globals['_LISTSCENESREQUEST']._serialized_end=243
-  _globals['_LISTSCENESRESPONSE']._serialized_start=245
-  _globals['_LISTSCENESRESPONSE']._serialized_end=309
-  _globals['_GETSCENEREQUEST']._serialized_start=311
-  _globals['_GETSCENEREQUEST']._serialized_end=389
-  _globals['_GETSCENERESPONSE']._serialized_start=391
-  _globals['_GETSCENERESPONSE']._serialized_end=453
-  _globals['_DELETESCENEREQUEST']._serialized_start=455
-  _globals['_DELETESCENEREQUEST']._serialized_end=490
-  _globals['_DELETESCENERESPONSE']._serialized_start=492
-  _globals['_DELETESCENERESPONSE']._serialized_end=556
-  _globals['_APPLYREQUEST']._serialized_start=559
-  _globals['_APPLYREQUEST']._serialized_end=750
-  _globals['_APPLYRESPONSE']._serialized_start=752
-  _globals['_APPLYRESPONSE']._serialized_end=815
-  _globals['_HASASSETSREQUEST']._serialized_start=817
-  _globals['_HASASSETSREQUEST']._serialized_end=851
-  _globals['_HASASSETSRESPONSE']._serialized_start=853
-  _globals['_HASASSETSRESPONSE']._serialized_end=889
-  _globals['_PUTASSETREQUEST']._serialized_start=891
-  _globals['_PUTASSETREQUEST']._serialized_end=978
-  _globals['_ASSETHEADER']._serialized_start=980
-  _globals['_ASSETHEADER']._serialized_end=1024
-  _globals['_PUTASSETRESPONSE']._serialized_start=1026
-  _globals['_PUTASSETRESPONSE']._serialized_end=1100
-  _globals['_LOADROBOTRESPONSE']._serialized_start=1102
-  _globals['_LOADROBOTRESPONSE']._serialized_end=1162
-  _globals['_LISTROBOTSREQUEST']._serialized_start=1164
-  _globals['_LISTROBOTSREQUEST']._serialized_end=1183
-  _globals['_LISTROBOTSRESPONSE']._serialized_start=1185
-  _globals['_LISTROBOTSRESPONSE']._serialized_end=1249
-  _globals['_ROBOTSUMMARY']._serialized_start=1251
-  _globals['_ROBOTSUMMARY']._serialized_end=1291
-  _globals['_GETROBOTREQUEST']._serialized_start=1293
-  _globals['_GETROBOTREQUEST']._serialized_end=1322
-  _globals['_GETROBOTRESPONSE']._serialized_start=1324
-  _globals['_GETROBOTRESPONSE']._serialized_end=1383
-  _globals['_CHECKSTATESRESPONSE']._serialized_start=1385
-  _globals['_CHECKSTATESRESPONSE']._serialized_end=1444
-  _globals['_COLLIDERESPONSE']._serialized_start=1446
-  _globals['_COLLIDERESPONSE']._serialized_end=1501
-  _globals['_DISTANCERESPONSE']._serialized_start=1503
-  _globals['_DISTANCERESPONSE']._serialized_end=1559
-  _globals['_GETSERVERINFOREQUEST']._serialized_start=1561
-  _globals['_GETSERVERINFOREQUEST']._serialized_end=1583
-  _globals['_GETSERVERINFORESPONSE']._serialized_start=1586
-  _globals['_GETSERVERINFORESPONSE']._serialized_end=1759
-  _globals['_DOOR']._serialized_start=1761
-  _globals['_DOOR']._serialized_end=1798
-  _globals['_LIMIT']._serialized_start=1800
-  _globals['_LIMIT']._serialized_end=1872
-  _globals['_SCENES']._serialized_start=2367
-  _globals['_SCENES']._serialized_end=2765
-  _globals['_ASSETS']._serialized_start=2768
-  _globals['_ASSETS']._serialized_end=2931
-  _globals['_ROBOTS']._serialized_start=2934
-  _globals['_ROBOTS']._serialized_end=3176
-  _globals['_QUERIES']._serialized_start=3179
-  _globals['_QUERIES']._serialized_end=3419
-  _globals['_SERVER']._serialized_start=3421
-  _globals['_SERVER']._serialized_end=3519
+  _globals['_ERRORREASON']._serialized_start=2090
+  _globals['_ERRORREASON']._serialized_end=2579
+  _globals['_CREATESCENEREQUEST']._serialized_start=229
+  _globals['_CREATESCENEREQUEST']._serialized_end=310
+  _globals['_CREATESCENERESPONSE']._serialized_start=312
+  _globals['_CREATESCENERESPONSE']._serialized_end=376
+  _globals['_LISTSCENESREQUEST']._serialized_start=378
+  _globals['_LISTSCENESREQUEST']._serialized_end=397
+  _globals['_LISTSCENESRESPONSE']._serialized_start=399
+  _globals['_LISTSCENESRESPONSE']._serialized_end=463
+  _globals['_GETSCENEREQUEST']._serialized_start=466
+  _globals['_GETSCENEREQUEST']._serialized_end=604
+  _globals['_GETSCENERESPONSE']._serialized_start=606
+  _globals['_GETSCENERESPONSE']._serialized_end=668
+  _globals['_DELETESCENEREQUEST']._serialized_start=670
+  _globals['_DELETESCENEREQUEST']._serialized_end=705
+  _globals['_DELETESCENERESPONSE']._serialized_start=707
+  _globals['_DELETESCENERESPONSE']._serialized_end=771
+  _globals['_APPLYREQUEST']._serialized_start=774
+  _globals['_APPLYREQUEST']._serialized_end=965
+  _globals['_APPLYRESPONSE']._serialized_start=967
+  _globals['_APPLYRESPONSE']._serialized_end=1030
+  _globals['_HASASSETSREQUEST']._serialized_start=1032
+  _globals['_HASASSETSREQUEST']._serialized_end=1066
+  _globals['_HASASSETSRESPONSE']._serialized_start=1068
+  _globals['_HASASSETSRESPONSE']._serialized_end=1104
+  _globals['_PUTASSETREQUEST']._serialized_start=1106
+  _globals['_PUTASSETREQUEST']._serialized_end=1193
+  _globals['_ASSETHEADER']._serialized_start=1195
+  _globals['_ASSETHEADER']._serialized_end=1239
+  _globals['_PUTASSETRESPONSE']._serialized_start=1241
+  _globals['_PUTASSETRESPONSE']._serialized_end=1315
+  _globals['_LOADROBOTRESPONSE']._serialized_start=1317
+  _globals['_LOADROBOTRESPONSE']._serialized_end=1377
+  _globals['_LISTROBOTSREQUEST']._serialized_start=1379
+  _globals['_LISTROBOTSREQUEST']._serialized_end=1398
+  _globals['_LISTROBOTSRESPONSE']._serialized_start=1400
+  _globals['_LISTROBOTSRESPONSE']._serialized_end=1464
+  _globals['_ROBOTSUMMARY']._serialized_start=1466
+  _globals['_ROBOTSUMMARY']._serialized_end=1506
+  _globals['_GETROBOTREQUEST']._serialized_start=1508
+  _globals['_GETROBOTREQUEST']._serialized_end=1537
+  _globals['_GETROBOTRESPONSE']._serialized_start=1539
+  _globals['_GETROBOTRESPONSE']._serialized_end=1598
+  _globals['_CHECKSTATESRESPONSE']._serialized_start=1600
+  _globals['_CHECKSTATESRESPONSE']._serialized_end=1659
+  _globals['_COLLIDERESPONSE']._serialized_start=1661
+  _globals['_COLLIDERESPONSE']._serialized_end=1716
+  _globals['_DISTANCERESPONSE']._serialized_start=1718
+  _globals['_DISTANCERESPONSE']._serialized_end=1774
+  _globals['_GETSERVERINFOREQUEST']._serialized_start=1776
+  _globals['_GETSERVERINFOREQUEST']._serialized_end=1798
+  _globals['_GETSERVERINFORESPONSE']._serialized_start=1801
+  _globals['_GETSERVERINFORESPONSE']._serialized_end=1974
+  _globals['_DOOR']._serialized_start=1976
+  _globals['_DOOR']._serialized_end=2013
+  _globals['_LIMIT']._serialized_start=2015
+  _globals['_LIMIT']._serialized_end=2087
+  _globals['_SCENES']._serialized_start=2582
+  _globals['_SCENES']._serialized_end=3073
+  _globals['_ASSETS']._serialized_start=3076
+  _globals['_ASSETS']._serialized_end=3239
+  _globals['_ROBOTS']._serialized_start=3242
+  _globals['_ROBOTS']._serialized_end=3484
+  _globals['_QUERIES']._serialized_start=3487
+  _globals['_QUERIES']._serialized_end=4479
+  _globals['_SERVER']._serialized_start=4481
+  _globals['_SERVER']._serialized_end=4579
 # @@protoc_insertion_point(module_scope)

@@ -1,3 +1,7 @@
+from clearance.v1 import health_pb2 as _health_pb2
+from clearance.v1 import cast_pb2 as _cast_pb2
+from clearance.v1 import contact_pb2 as _contact_pb2
+from clearance.v1 import motion_pb2 as _motion_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
@@ -44,10 +48,12 @@ ERROR_REASON_INTERNAL: ErrorReason
 ERROR_REASON_KEY_REUSED: ErrorReason
 
 class CreateSceneRequest(_message.Message):
-    __slots__ = ("name",)
+    __slots__ = ("name", "broad_phase")
     NAME_FIELD_NUMBER: _ClassVar[int]
+    BROAD_PHASE_FIELD_NUMBER: _ClassVar[int]
     name: str
-    def __init__(self, name: _Optional[str] = ...) -> None: ...
+    broad_phase: _scene_pb2.BroadPhase
+    def __init__(self, name: _Optional[str] = ..., broad_phase: _Optional[_Union[_scene_pb2.BroadPhase, str]] = ...) -> None: ...
 
 class CreateSceneResponse(_message.Message):
     __slots__ = ("scene",)
@@ -66,12 +72,16 @@ class ListScenesResponse(_message.Message):
     def __init__(self, scenes: _Optional[_Iterable[_Union[_scene_pb2.SceneSummary, _Mapping]]] = ...) -> None: ...
 
 class GetSceneRequest(_message.Message):
-    __slots__ = ("scene", "revision")
+    __slots__ = ("scene", "revision", "max_bodies", "after_body")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
+    MAX_BODIES_FIELD_NUMBER: _ClassVar[int]
+    AFTER_BODY_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: _query_pb2.RevisionRule
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[_query_pb2.RevisionRule, _Mapping]] = ...) -> None: ...
+    max_bodies: int
+    after_body: int
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[_query_pb2.RevisionRule, _Mapping]] = ..., max_bodies: _Optional[int] = ..., after_body: _Optional[int] = ...) -> None: ...
 
 class GetSceneResponse(_message.Message):
     __slots__ = ("scene",)

@@ -3,6 +3,10 @@
 import grpc
 import warnings
 
+from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
+from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
+from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
+from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import service_pb2 as clearance_dot_v1_dot_service__pb2
@@ -52,6 +56,11 @@ class ScenesStub(object):
                 request_serializer=clearance_dot_v1_dot_service__pb2.GetSceneRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.GetSceneResponse.FromString,
                 _registered_method=True)
+        self.GetSceneHealth = channel.unary_unary(
+                '/clearance.v1.Scenes/GetSceneHealth',
+                request_serializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.FromString,
+                _registered_method=True)
         self.DeleteScene = channel.unary_unary(
                 '/clearance.v1.Scenes/DeleteScene',
                 request_serializer=clearance_dot_v1_dot_service__pb2.DeleteSceneRequest.SerializeToString,
@@ -89,6 +98,13 @@ class ScenesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def GetSceneHealth(self, request, context):
+        """What a scene holds in memory, and how good its broad phase is.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
     def DeleteScene(self, request, context):
         """The scene and its revisions are gone; questions being answered are still answered.
         """
@@ -120,6 +136,11 @@ def add_ScenesServicer_to_server(servicer, server):
                     servicer.GetScene,
                     request_deserializer=clearance_dot_v1_dot_service__pb2.GetSceneRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.GetSceneResponse.SerializeToString,
+            ),
+            'GetSceneHealth': grpc.unary_unary_rpc_method_handler(
+                    servicer.GetSceneHealth,
+                    request_deserializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.SerializeToString,
             ),
             'DeleteScene': grpc.unary_unary_rpc_method_handler(
                     servicer.DeleteScene,
@@ -214,6 +235,33 @@ class Scenes(object):
             '/clearance.v1.Scenes/GetScene',
             clearance_dot_v1_dot_service__pb2.GetSceneRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.GetSceneResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def GetSceneHealth(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Scenes/GetSceneHealth',
+            clearance_dot_v1_dot_health__pb2.GetSceneHealthRequest.SerializeToString,
+            clearance_dot_v1_dot_health__pb2.GetSceneHealthResponse.FromString,
             options,
             channel_credentials,
             insecure,
@@ -588,6 +636,51 @@ class QueriesStub(object):
                 request_serializer=clearance_dot_v1_dot_query__pb2.DistanceRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.DistanceResponse.FromString,
                 _registered_method=True)
+        self.CastRays = channel.unary_unary(
+                '/clearance.v1.Queries/CastRays',
+                request_serializer=clearance_dot_v1_dot_cast__pb2.CastRaysRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_cast__pb2.CastRaysResponse.FromString,
+                _registered_method=True)
+        self.CastShapes = channel.unary_unary(
+                '/clearance.v1.Queries/CastShapes',
+                request_serializer=clearance_dot_v1_dot_cast__pb2.CastShapesRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_cast__pb2.CastShapesResponse.FromString,
+                _registered_method=True)
+        self.CheckMovingPairs = channel.unary_unary(
+                '/clearance.v1.Queries/CheckMovingPairs',
+                request_serializer=clearance_dot_v1_dot_cast__pb2.CheckMovingPairsRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_cast__pb2.CheckMovingPairsResponse.FromString,
+                _registered_method=True)
+        self.Overlap = channel.unary_unary(
+                '/clearance.v1.Queries/Overlap',
+                request_serializer=clearance_dot_v1_dot_cast__pb2.OverlapRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_cast__pb2.OverlapResponse.FromString,
+                _registered_method=True)
+        self.NearestBodies = channel.unary_unary(
+                '/clearance.v1.Queries/NearestBodies',
+                request_serializer=clearance_dot_v1_dot_cast__pb2.NearestBodiesRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_cast__pb2.NearestBodiesResponse.FromString,
+                _registered_method=True)
+        self.WatchContacts = channel.unary_stream(
+                '/clearance.v1.Queries/WatchContacts',
+                request_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
+                _registered_method=True)
+        self.CheckMotions = channel.unary_unary(
+                '/clearance.v1.Queries/CheckMotions',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.FromString,
+                _registered_method=True)
+        self.CheckPath = channel.unary_unary(
+                '/clearance.v1.Queries/CheckPath',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.CheckPathRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.CheckPathResponse.FromString,
+                _registered_method=True)
+        self.Clearance = channel.unary_unary(
+                '/clearance.v1.Queries/Clearance',
+                request_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
+                _registered_method=True)
 
 
 class QueriesServicer(object):
@@ -615,6 +708,69 @@ class QueriesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def CastRays(self, request, context):
+        """What does each ray meet?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def CastShapes(self, request, context):
+        """What does each moving shape or body meet, and when?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def CheckMovingPairs(self, request, context):
+        """When does each pair of moving shapes or bodies meet?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def Overlap(self, request, context):
+        """Which bodies have a point in each region?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def NearestBodies(self, request, context):
+        """Which bodies are nearest?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def WatchContacts(self, request, context):
+        """Which contacts begin, stay and end, for as long as the caller listens?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def CheckMotions(self, request, context):
+        """Is the robot free all along these motions?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def CheckPath(self, request, context):
+        """Is the robot free all along a path, and where is it blocked first?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def Clearance(self, request, context):
+        """Which pairs are within a distance?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_QueriesServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -632,6 +788,51 @@ def add_QueriesServicer_to_server(servicer, server):
                     servicer.Distance,
                     request_deserializer=clearance_dot_v1_dot_query__pb2.DistanceRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.DistanceResponse.SerializeToString,
+            ),
+            'CastRays': grpc.unary_unary_rpc_method_handler(
+                    servicer.CastRays,
+                    request_deserializer=clearance_dot_v1_dot_cast__pb2.CastRaysRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_cast__pb2.CastRaysResponse.SerializeToString,
+            ),
+            'CastShapes': grpc.unary_unary_rpc_method_handler(
+                    servicer.CastShapes,
+                    request_deserializer=clearance_dot_v1_dot_cast__pb2.CastShapesRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_cast__pb2.CastShapesResponse.SerializeToString,
+            ),
+            'CheckMovingPairs': grpc.unary_unary_rpc_method_handler(
+                    servicer.CheckMovingPairs,
+                    request_deserializer=clearance_dot_v1_dot_cast__pb2.CheckMovingPairsRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_cast__pb2.CheckMovingPairsResponse.SerializeToString,
+            ),
+            'Overlap': grpc.unary_unary_rpc_method_handler(
+                    servicer.Overlap,
+                    request_deserializer=clearance_dot_v1_dot_cast__pb2.OverlapRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_cast__pb2.OverlapResponse.SerializeToString,
+            ),
+            'NearestBodies': grpc.unary_unary_rpc_method_handler(
+                    servicer.NearestBodies,
+                    request_deserializer=clearance_dot_v1_dot_cast__pb2.NearestBodiesRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_cast__pb2.NearestBodiesResponse.SerializeToString,
+            ),
+            'WatchContacts': grpc.unary_stream_rpc_method_handler(
+                    servicer.WatchContacts,
+                    request_deserializer=clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.SerializeToString,
+            ),
+            'CheckMotions': grpc.unary_unary_rpc_method_handler(
+                    servicer.CheckMotions,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.SerializeToString,
+            ),
+            'CheckPath': grpc.unary_unary_rpc_method_handler(
+                    servicer.CheckPath,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.CheckPathRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.CheckPathResponse.SerializeToString,
+            ),
+            'Clearance': grpc.unary_unary_rpc_method_handler(
+                    servicer.Clearance,
+                    request_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -716,6 +917,249 @@ class Queries(object):
             '/clearance.v1.Queries/Distance',
             clearance_dot_v1_dot_query__pb2.DistanceRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.DistanceResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CastRays(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CastRays',
+            clearance_dot_v1_dot_cast__pb2.CastRaysRequest.SerializeToString,
+            clearance_dot_v1_dot_cast__pb2.CastRaysResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CastShapes(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CastShapes',
+            clearance_dot_v1_dot_cast__pb2.CastShapesRequest.SerializeToString,
+            clearance_dot_v1_dot_cast__pb2.CastShapesResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CheckMovingPairs(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CheckMovingPairs',
+            clearance_dot_v1_dot_cast__pb2.CheckMovingPairsRequest.SerializeToString,
+            clearance_dot_v1_dot_cast__pb2.CheckMovingPairsResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def Overlap(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/Overlap',
+            clearance_dot_v1_dot_cast__pb2.OverlapRequest.SerializeToString,
+            clearance_dot_v1_dot_cast__pb2.OverlapResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def NearestBodies(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/NearestBodies',
+            clearance_dot_v1_dot_cast__pb2.NearestBodiesRequest.SerializeToString,
+            clearance_dot_v1_dot_cast__pb2.NearestBodiesResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def WatchContacts(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_stream(
+            request,
+            target,
+            '/clearance.v1.Queries/WatchContacts',
+            clearance_dot_v1_dot_contact__pb2.WatchContactsRequest.SerializeToString,
+            clearance_dot_v1_dot_contact__pb2.WatchContactsResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CheckMotions(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CheckMotions',
+            clearance_dot_v1_dot_motion__pb2.CheckMotionsRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.CheckMotionsResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def CheckPath(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/CheckPath',
+            clearance_dot_v1_dot_motion__pb2.CheckPathRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.CheckPathResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def Clearance(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/Clearance',
+            clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
+            clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
             options,
             channel_credentials,
             insecure,

@@ -1,0 +1,331 @@
+//! Makes the changes of a list: moves and removals in one pass from the root, each node on the way visited once, then
+//! the insertions.
+//!
+//! A moved entry stays in its leaf, whose bound is taken anew, and so on upward as far as bounds change. An entry that
+//! stretches its leaf too much is taken out and put in anew. Few changes are sorted by the way to their leaves; many are
+//! looked up leaf by leaf, so that moving everything reads and writes everything once.
+
+use std::mem;
+use std::sync::Arc;
+
+use super::arrange::{Arranger, Item, Stock, roomy_levels};
+use super::maintain::{MOVE_DEBT, PLACE_DEBT};
+use super::node::{Entry, Inner, Kid, Leaf, lanes_of};
+use super::places::{Place, Places};
+use super::tree::{Change, ChangeKind, DynamicTree};
+use super::volume::BoundingVolume;
+
+/// With more than one change in so many entries the whole tree is walked instead of sorting them.
+const MANY: usize = 8;
+
+/// Stands for no change.
+const NO_CHANGE: u32 = u32::MAX;
+
+/// A moved entry may make its leaf this many times as dear as when the leaf's entries were last chosen. Smaller puts more
+/// entries in anew, larger leaves the tree worse until upkeep comes by.
+const LARGEST_STRETCH: f32 = 1.3;
+
+/// An entry leaves a leaf that has become too dear if without it the leaf is cheaper by at least this factor.
+const LEAST_BLAME: f32 = 1.03;
+
+/// After a removal a leaf of so few entries gives them to others.
+const TOO_FEW: usize = 2;
+
+/// Once at least this many times as many entries come in as there are, all are arranged anew.
+const BULK: usize = 1;
+
+/// The changes that concern a subtree.
+#[derive(Clone, Copy)]
+enum Share<'a> {
+    /// By the way to their leaves, and in their order for each leaf: the way, and the change's index. Then where the
+    /// next lane stands in the way.
+    Few(&'a [(u64, u32)], u32),
+    /// By slot: the index of the last change.
+    Many(&'a [u32]),
+}
+
+struct Pass<'a, V: BoundingVolume> {
+    changes: &'a [Change<V>],
+    places: &'a mut Places,
+    /// Entries that have to be put in anew.
+    loose: Vec<Entry<V>>,
+}
+
+/// What became of a node.
+#[derive(Clone, Copy, Default)]
+struct Outcome {
+    /// Its bound may be another one.
+    changed: bool,
+    /// It has lost entries or children.
+    shrunk: bool,
+}
+
+impl<V: BoundingVolume> DynamicTree<V> {
+    /// Makes the changes that wait.
+    pub(super) fn flush(&mut self) {
+        if self.waiting.is_empty() {
+            return;
+        }
+        let waiting = mem::take(&mut self.waiting);
+        let mut loose = Vec::new();
+        let mut edits = 0;
+        for change in &waiting {
+            match change.kind {
+                ChangeKind::Insert { payload } => {
+                    loose.push(Entry { volume: change.volume, payload, slot: change.slot });
+                }
+                ChangeKind::Move | ChangeKind::Remove => edits += 1,
+                ChangeKind::Nothing => {}
+            }
+        }
+        self.upkeep.owe(edits as f64 * MOVE_DEBT);
+        if edits > 0 {
+            loose.extend(self.change(&waiting, edits));
+            for change in waiting.iter().filter(|change| change.kind == ChangeKind::Remove) {
+                self.upkeep.owe(PLACE_DEBT);
+                self.places.free_slot(change.slot);
+            }
+        }
+        let placed = self.count - loose.len().min(self.count);
+        if loose.len() > BULK * placed + 8 {
+            self.rearrange_all(loose);
+            return;
+        }
+        self.upkeep.owe(loose.len() as f64 * PLACE_DEBT);
+        loose.iter().for_each(|entry| self.place(entry));
+    }
+
+    /// Builds the tree anew over its entries and further ones.
+    fn rearrange_all(&mut self, further: Vec<Entry<V>>) {
+        let mut entries = further;
+        entries.extend(self.leaves().flat_map(Leaf::all));
+        if let Some(root) = self.root.take() {
+            free_ids(&root, &mut self.places);
+        }
+        self.upkeep.paid_in_full();
+        self.build_over(&entries);
+    }
+
+    /// Makes the root over entries when there is none.
+    pub(super) fn build_over(&mut self, entries: &[Entry<V>]) {
+        if entries.is_empty() {
+            return;
+        }
+        let mut items: Vec<Item<V>> =
+            (0..).zip(entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
+        let mut arranger = Arranger { stock: Stock::Entries(entries), places: &mut self.places };
+        let (root, _) = arranger.arrange(&mut items, roomy_levels(entries.len()));
+        self.places.set_root(root.id());
+        self.root = Some(root);
+    }
+
+    /// Makes the moves and removals, and gives back the entries to be put in anew.
+    fn change(&mut self, changes: &[Change<V>], edits: usize) -> Vec<Entry<V>> {
+        let moving = |change: &&Change<V>| matches!(change.kind, ChangeKind::Move | ChangeKind::Remove);
+        let mut ways: Vec<(u64, u32)> = Vec::new();
+        let mut many = edits > self.count / MANY;
+        if !many {
+            ways.reserve_exact(edits);
+            for (index, change) in (0..).zip(changes).filter(|(_, change)| moving(change)) {
+                let Place::Leaf(leaf) = self.places.place(change.slot) else { continue };
+                match self.places.path(leaf) {
+                    Some(way) => ways.push((way, index)),
+                    None => many = true,
+                }
+            }
+            ways.sort_unstable();
+        }
+        let mut last = Vec::new();
+        if many {
+            last = vec![NO_CHANGE; self.places.slot_count()];
+            for (index, change) in (0..).zip(changes).filter(|(_, change)| moving(change)) {
+                last[change.slot as usize] = index;
+            }
+        }
+        let share = if many { Share::Many(&last) } else { Share::Few(&ways, 61) };
+        let mut pass = Pass { changes, places: &mut self.places, loose: Vec::new() };
+        if let Some(root) = &mut self.root {
+            pass.visit(root, share);
+        }
+        let loose = pass.loose;
+        self.trim_root();
+        loose
+    }
+
+    /// A root without children is none, and one with one child is that child.
+    pub(super) fn trim_root(&mut self) {
+        while let Some(root) = &self.root {
+            let id = root.id();
+            let only = match root {
+                Kid::Leaf(leaf) if leaf.entries.is_empty() => None,
+                Kid::Inner(inner) if inner.kids.is_empty() => None,
+                Kid::Inner(inner) if inner.kids.len() == 1 => Some(inner.kids[0].clone()),
+                Kid::Leaf(_) | Kid::Inner(_) => return,
+            };
+            self.places.free_node(id);
+            if let Some(only) = &only {
+                self.places.set_root(only.id());
+            }
+            self.root = only;
+        }
+    }
+}
+
+impl<V: BoundingVolume> Pass<'_, V> {
+    fn visit(&mut self, kid: &mut Kid<V>, share: Share<'_>) -> Outcome {
+        match kid {
+            Kid::Leaf(leaf) => self.visit_leaf(leaf, share),
+            Kid::Inner(inner) => {
+                let inner = Arc::make_mut(inner);
+                let (mut outcome, mut thin) = (Outcome::default(), 0_u8);
+                match share {
+                    Share::Many(_) => {
+                        for lane in 0..inner.kids.len() {
+                            self.visit_lane(inner, lane, share, &mut outcome, &mut thin);
+                        }
+                    }
+                    Share::Few(ways, shift) => {
+                        let mut rest = ways;
+                        while let Some((way, _)) = rest.first() {
+                            let lane = (way >> shift & 7) as usize;
+                            let own = rest.partition_point(|(way, _)| (way >> shift & 7) as usize == lane);
+                            let below = Share::Few(&rest[..own], shift.saturating_sub(3));
+                            rest = &rest[own..];
+                            self.visit_lane(inner, lane, below, &mut outcome, &mut thin);
+                        }
+                    }
+                }
+                if thin != 0 {
+                    self.thin_out(inner, thin);
+                    outcome = Outcome { changed: true, shrunk: true };
+                }
+                outcome
+            }
+        }
+    }
+
+    fn visit_lane(&mut self, inner: &mut Inner<V>, lane: usize, share: Share<'_>, sum: &mut Outcome, thin: &mut u8) {
+        let outcome = self.visit(&mut inner.kids[lane], share);
+        let kid = &inner.kids[lane];
+        let few = match kid {
+            Kid::Leaf(leaf) => leaf.entries.len() <= TOO_FEW,
+            Kid::Inner(inner) => inner.kids.len() <= 1,
+        };
+        if outcome.shrunk && few {
+            *thin |= 1 << lane;
+            return;
+        }
+        if outcome.changed {
+            let bound = kid.bound();
+            if bound != V::get(&inner.lanes, lane) {
+                V::put(&mut inner.lanes, lane, &bound);
+                sum.changed = true;
+            }
+        }
+    }
+
+    /// Dissolves the children in those lanes: entries of leaves are put in anew, an only child takes its parent's place.
+    fn thin_out(&mut self, inner: &mut Inner<V>, thin: u8) {
+        let lanes: Vec<usize> = lanes_of(thin).collect();
+        for &lane in lanes.iter().rev() {
+            let only = match &inner.kids[lane] {
+                Kid::Inner(child) => child.kids.first().cloned(),
+                Kid::Leaf(leaf) => {
+                    self.loose.extend(leaf.all());
+                    None
+                }
+            };
+            self.places.free_node(inner.kids[lane].id());
+            if let Some(only) = only {
+                self.places.set_parent(only.id(), inner.id, lane);
+                V::put(&mut inner.lanes, lane, &only.bound());
+                inner.kids[lane] = only;
+                continue;
+            }
+            inner.take(lane);
+            if let Some(moved) = inner.kids.get(lane) {
+                self.places.set_parent(moved.id(), inner.id, lane);
+            }
+        }
+    }
+
+    fn visit_leaf(&mut self, shared: &mut Arc<Leaf<V>>, share: Share<'_>) -> Outcome {
+        let changes = self.changes;
+        let (mut moved, mut gone) = (0_u8, 0_u8);
+        let leaf = match share {
+            Share::Many(last) => {
+                let change_of = |slot: &u32| last[*slot as usize];
+                if shared.entries.iter().all(|slot| change_of(slot) == NO_CHANGE) {
+                    return Outcome::default();
+                }
+                let leaf = Arc::make_mut(shared);
+                for lane in 0..leaf.entries.len() {
+                    let Some(change) = changes.get(change_of(&leaf.entries[lane]) as usize) else { continue };
+                    if change.kind == ChangeKind::Remove {
+                        gone |= 1 << lane;
+                    } else {
+                        moved |= 1 << lane;
+                        leaf.set(lane, &change.volume);
+                    }
+                }
+                leaf
+            }
+            Share::Few(ways, _) => {
+                let leaf = Arc::make_mut(shared);
+                for (_, index) in ways {
+                    let change = &changes[*index as usize];
+                    let Some(lane) = leaf.lane_of(change.slot) else { continue };
+                    if change.kind == ChangeKind::Remove {
+                        gone |= 1 << lane;
+                    } else {
+                        moved |= 1 << lane;
+                        leaf.set(lane, &change.volume);
+                    }
+                }
+                leaf
+            }
+        };
+        let mut going = gone;
+        if gone.count_ones() as usize != leaf.entries.len() {
+            going |= overstretching(leaf, moved, gone);
+        }
+        for lane in (0..leaf.entries.len()).rev().filter(|lane| going >> lane & 1 != 0) {
+            let entry = leaf.take(lane);
+            if gone >> lane & 1 == 0 {
+                self.loose.push(entry);
+            }
+        }
+        Outcome { changed: true, shrunk: going != 0 }
+    }
+}
+
+/// The moved entries that should leave a leaf: those without which it would be clearly cheaper, as long as it is too dear.
+fn overstretching<V: BoundingVolume>(leaf: &Leaf<V>, moved: u8, gone: u8) -> u8 {
+    let limit = LARGEST_STRETCH * leaf.arranged;
+    let cost_without = |lanes: u8| {
+        let staying = (0..leaf.entries.len()).filter(|lane| lanes >> lane & 1 == 0);
+        let bound = staying.map(|lane| V::get(&leaf.lanes, lane)).reduce(|a, b| V::union(&a, &b));
+        bound.map_or(0.0, |bound| V::cost(&bound))
+    };
+    let mut going = 0;
+    let mut cost = if gone == 0 { V::cost(&leaf.bound()) } else { cost_without(gone) };
+    while cost > limit {
+        let without = |lane| (cost_without(going | gone | 1_u8 << lane), lane);
+        let candidates = lanes_of(moved & !gone & !going).map(without);
+        let Some((less, lane)) = candidates.reduce(|a, b| if b.0 < a.0 { b } else { a }) else { break };
+        if less * LEAST_BLAME > cost {
+            break; // No one entry is to blame.
+        }
+        going |= 1 << lane;
+        cost = less;
+    }
+    going
+}
+
+/// Gives back the ids of a subtree.
+pub(super) fn free_ids<V: BoundingVolume>(kid: &Kid<V>, places: &mut Places) {
+    places.free_node(kid.id());
+    if let Kid::Inner(inner) = kid {
+        inner.kids.iter().for_each(|kid| free_ids(kid, places));
+    }
+}
