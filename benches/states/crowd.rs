@@ -1,9 +1,9 @@
 //! Scenes with ten thousand more bodies, and the right answers in them by looking at every pair.
 //!
 //! Small boxes, cylinders and spheres at random in a hall of 12 x 12 x 4 m around the robot: a tenth of them within its
-//! reach, as parts and tools lie about, the others beyond it. A body in reach is taken only where no state of the scene
-//! comes nearer to it than 5 mm: so the verdicts of the workload stay, a third of them collisions, while every state
-//! has to be proved free of a hundred things that are near, and its distance is another.
+//! reach, as parts and tools lie about, the others beyond it. A body is taken only where no state of the scene comes
+//! nearer to it than 5 mm: so the verdicts of the workload stay, a third of them collisions, while every state has to be
+//! proved free of what is near, and its distance may be another.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -17,14 +17,14 @@ use serde_json::Value;
 pub const EXTRA: usize = 10_000;
 const IN_REACH: usize = 1_000;
 
-/// What the arm reaches from its base, metres, with a little to spare.
+/// What the arm reaches from its shoulder, metres, with a little to spare.
 const REACH: f64 = 1.3;
 
 /// The least distance between a state and an extra body, metres.
 const ROOM: f64 = 0.005;
 
-/// The hall's half lengths and height, metres.
-const HALL: (f64, f64) = (6.0, 4.0);
+/// The hall's half lengths, and half its height, about the shoulder, metres.
+const HALL: (f64, f64) = (6.0, 2.0);
 
 /// Every third scene of the workload: the others have the same objects in other places.
 const EVERY: usize = 3;
@@ -55,13 +55,14 @@ pub fn scenes(robot: &Arc<RobotModel>, plain: &[Arc<Snapshot>], states: &[(usize
 fn crowded(robot: &Arc<RobotModel>, plain: &Snapshot, scene: usize, states: &[(usize, Vec<f64>, Value)]) -> Crowded {
     let own: Vec<_> = states.iter().filter(|(of, _, _)| *of == scene).collect();
     let arms: Vec<Vec<Placed>> = own.iter().map(|(_, positions, _)| arm(robot, positions)).collect();
+    let shoulder = shoulder(robot, &own[0].1);
     let mut random = Random(scene as u64 + 1);
     let mut bodies: Vec<(Arc<Shape>, Pose)> = Vec::new();
     while bodies.len() < EXTRA {
         let in_reach = bodies.len() < IN_REACH;
-        let (shape, pose) = (Arc::new(shape(&mut random)), pose(&mut random, in_reach));
+        let (shape, pose) = (Arc::new(shape(&mut random)), pose(&mut random, shoulder, in_reach));
         let body = Placed::new(&shape, &pose);
-        if !in_reach || arms.iter().all(|arm| least(arm, std::slice::from_ref(&body), ROOM) >= ROOM) {
+        if arms.iter().all(|arm| least(arm, std::slice::from_ref(&body), ROOM) >= ROOM) {
             bodies.push((shape, pose));
         }
     }
@@ -101,13 +102,20 @@ fn shape(random: &mut Random) -> Shape {
     made.expect("its lengths are positive")
 }
 
-fn pose(random: &mut Random, in_reach: bool) -> Pose {
+fn shoulder(robot: &RobotModel, positions: &[f64]) -> Vec3 {
+    let mut poses = Vec::new();
+    robot.link_poses(positions, &Pose::identity(), &mut poses);
+    let link = robot.link("shoulder_link_0").expect("the arm has a shoulder");
+    poses[link as usize].translation()
+}
+
+fn pose(random: &mut Random, shoulder: Vec3, in_reach: bool) -> Pose {
     let translation = loop {
         let (half, height) = if in_reach { (REACH, REACH) } else { HALL };
         let mut across = || random.between(-half, half);
-        let point = Vec3::new(across(), across(), random.between(0.0, height));
+        let point = Vec3::new(across(), across(), random.between(-height, height));
         if (point.norm() < REACH) == in_reach {
-            break point;
+            break shoulder + point;
         }
     };
     let mut component = || random.between(-1.0, 1.0);
