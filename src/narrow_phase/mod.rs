@@ -8,7 +8,8 @@
 //! separating axes (`sat`), Newton's method (`smooth`), or one for comparison (`frank_wolfe`, `qp`); `line_of_centers` and
 //! `far_apart` answer some verdicts before. What doubles leave open `escalation` hands to `revolution`, `double_double` and
 //! `exact`. Below lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a
-//! second door, for all touching triangles; [`separations`] is the first one for many pairs at once.
+//! second door, for all touching triangles; [`separations`] is the first one for many pairs at once, and [`fit`] asks how well
+//! a decomposition fits its mesh.
 
 mod batch;
 mod box_gaps;
@@ -20,6 +21,7 @@ mod epa;
 mod escalation;
 mod exact;
 mod far_apart;
+mod fit;
 mod frank_wolfe;
 mod given;
 mod gjk;
@@ -58,6 +60,7 @@ mod wall;
 mod witness;
 
 pub use batch::{PairQuestion, separations};
+pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;

@@ -6,6 +6,7 @@ mod history;
 mod model;
 mod random_edits;
 mod refusals;
+mod voxels;
 
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use super::{Path, fields};
 use crate::geometry::mesh_file::MeshFormat;
 use crate::geometry::tolerance::LARGEST_LENGTH;
 use crate::geometry::{
-    Compound, ConvexHull, InvalidPose, InvalidShape, Part, Pose, Quaternion, Shape, TriangleMesh, Vec3,
+    Compound, ConvexHull, InvalidPose, InvalidShape, Part, Pose, Quaternion, Shape, TriangleMesh, Vec3, decomposed,
 };
 use crate::limits::{LimitExceeded, Limits};
 use crate::robot::MeshUse;
@@ -37,7 +37,7 @@ fn vec3(v: &v1::Vec3) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
+pub(super) fn required_vec3(path: &Path<'_>, v: Option<&v1::Vec3>) -> Result<Vec3, ServiceError> {
     path.required(v).map(vec3)
 }
 
@@ -79,6 +79,7 @@ fn core(path: &Path<'_>, core: Option<&v1::shape::Core>, library: &Library) -> R
         Core::Compound(compound) => return self::compound(&path.field("compound"), compound, library),
         Core::HeightField(field) => return fields::height_field(&path.field("height_field"), field, library),
         Core::PointCloud(cloud) => return fields::point_cloud(&path.field("point_cloud"), cloud, library),
+        Core::Voxels(voxels) => return fields::voxels(&path.field("voxels"), voxels, library),
         Core::Point(v1::Point {}) => return Ok(Shape::point()),
         Core::Segment(segment) => {
             let path = path.field("segment");
@@ -115,6 +116,7 @@ fn inline_mesh(path: &Path<'_>, mesh: &v1::Mesh, limits: &Limits) -> Result<Shap
     let shape = match required_mesh_mode(&path.field("mode"), mesh.mode)? {
         MeshUse::Exact => TriangleMesh::surface(vertices, corners.to_vec()).map(|mesh| Shape::mesh(Arc::new(mesh))),
         MeshUse::Solid => TriangleMesh::solid(vertices, corners.to_vec()).map(|mesh| Shape::mesh(Arc::new(mesh))),
+        MeshUse::Decompose => decomposed(&vertices, corners).map(|pieces| Shape::compound(Arc::new(pieces))),
         MeshUse::Hull => {
             LimitExceeded::check("max_hull_points", vertices.len(), limits.max_hull_points)?;
             ConvexHull::new(&vertices).map(|hull| Shape::hull(Arc::new(hull)))
@@ -165,6 +167,7 @@ pub fn mesh_mode(path: &Path<'_>, number: i32) -> Result<Option<MeshUse>, Servic
         Ok(v1::MeshMode::Exact) => Ok(Some(MeshUse::Exact)),
         Ok(v1::MeshMode::Hull) => Ok(Some(MeshUse::Hull)),
         Ok(v1::MeshMode::Solid) => Ok(Some(MeshUse::Solid)),
+        Ok(v1::MeshMode::Decompose) => Ok(Some(MeshUse::Decompose)),
         Err(_) => Err(path.invalid(format!("has the unknown value {number}"))),
     }
 }
@@ -202,11 +205,14 @@ pub(super) fn refused(path: &Path<'_>, error: &InvalidShape) -> ServiceError {
         | InvalidShape::TooFew { field, .. }
         | InvalidShape::TooMany { field, .. }
         | InvalidShape::WrongCount { field, .. } => (*field).to_owned(),
+        InvalidShape::UpsideDown { axis } => format!("min.{axis}"),
         InvalidShape::BelowFloor { sample, .. } => format!("heights[{sample}]"),
         InvalidShape::ZeroNormal => "normal".to_owned(),
         InvalidShape::BadIndex { triangle, .. } => format!("triangles[{triangle}]"),
         InvalidShape::Part { part, .. } => format!("parts[{part}]"),
-        InvalidShape::NotClosed { .. } | InvalidShape::InsideOut { .. } => return path.invalid(text),
+        InvalidShape::NotClosed { .. } | InvalidShape::InsideOut { .. } | InvalidShape::NotDecomposed => {
+            return path.invalid(text);
+        }
     };
     // The texts begin with their field.
     let problem = text.strip_prefix(&inner).unwrap_or(&text).trim_start_matches([':', ' ']);
