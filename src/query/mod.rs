@@ -3,6 +3,7 @@
 mod answer;
 mod batch;
 mod context;
+mod mesh_card;
 mod pairs;
 mod request;
 mod search;
@@ -11,4 +12,5 @@ mod verdict;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Refused, Side, Verdict, Witness};
 pub use batch::{Part, Prepared};
+pub use mesh_card::MeshCard;
 pub use request::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};

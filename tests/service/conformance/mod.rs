@@ -3,11 +3,13 @@
 mod assets;
 mod bad_input;
 mod caps;
+mod decompositions;
 mod fields;
 mod questions;
 mod revisions;
 mod robots;
 mod scenes;
+mod voxels;
 
 /// Makes a test of each behaviour for each door.
 macro_rules! through_every_door {

@@ -7,14 +7,16 @@
 Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are :class:`ClearanceError`.
 """
 
-from .answers import Applied, Bracket, Cost, ItemAnswer, PairAnswer, Side, StatesAnswer, Verdict
+from .answers import Applied, Bracket, Cost, ItemAnswer, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
 from .client import DEFAULT_ADDRESS, Client, Scene
 from .edits import (
     add_body,
     add_robot,
     allow_collision,
     body,
+    clear_box,
     group,
+    insert_points,
     link,
     move_body,
     move_robot,
@@ -54,6 +56,7 @@ from .shapes import (
     segment,
     sphere,
     triangle,
+    voxels,
 )
 
 __all__ = [
@@ -69,6 +72,7 @@ __all__ = [
     "ItemAnswer",
     "Joint",
     "LimitExceeded",
+    "MeshCard",
     "NotFound",
     "PairAnswer",
     "RevisionGone",
@@ -85,6 +89,7 @@ __all__ = [
     "body",
     "box",
     "capsule",
+    "clear_box",
     "compound",
     "cone",
     "convex",
@@ -92,6 +97,7 @@ __all__ = [
     "ellipsoid",
     "group",
     "half_space",
+    "insert_points",
     "height_field",
     "link",
     "mesh",
@@ -111,4 +117,5 @@ __all__ = [
     "set_pair_margin",
     "sphere",
     "triangle",
+    "voxels",
 ]

@@ -10,7 +10,7 @@ use crate::geometry::{
 };
 use crate::limits::{LimitExceeded, Limits};
 use crate::robot::MeshUse;
-use crate::service::{Library, MeshReading, ServiceError, UnusableMesh};
+use crate::service::{ContentHash, Library, MeshCardRequest, MeshReading, ServiceError, UnusableMesh};
 use crate::transports::wire::v1;
 
 /// A pose; absent parts mean no translation and no rotation.
@@ -126,6 +126,12 @@ fn inline_mesh(path: &Path<'_>, mesh: &v1::Mesh, limits: &Limits) -> Result<Shap
 }
 
 fn mesh_asset(path: &Path<'_>, asset: &v1::MeshAsset, library: &Library) -> Result<Shape, ServiceError> {
+    let (hash, reading) = mesh_reading(path, asset)?;
+    library.mesh_shape(hash, &reading).map_err(|error| unusable(path, error))
+}
+
+/// Which file, and how it is read.
+fn mesh_reading(path: &Path<'_>, asset: &v1::MeshAsset) -> Result<(ContentHash, MeshReading), ServiceError> {
     let hash = asset.sha256.parse().map_err(|error| path.field("sha256").invalid(error))?;
     let format = mesh_format(&path.field("format"), asset.format)?;
     let reading = MeshReading {
@@ -133,12 +139,38 @@ fn mesh_asset(path: &Path<'_>, asset: &v1::MeshAsset, library: &Library) -> Resu
         mode: required_mesh_mode(&path.field("mode"), asset.mode)?,
         scale: asset.scale.as_ref().map_or_else(|| Vec3::repeat(1.0), vec3),
     };
-    library.mesh_shape(hash, &reading).map_err(|error| match error {
+    Ok((hash, reading))
+}
+
+/// What a mesh costs as convex pieces.
+///
+/// # Errors
+/// A field that is missing or cannot be.
+pub fn mesh_card_request(request: &v1::DescribeMeshRequest) -> Result<MeshCardRequest, ServiceError> {
+    let path = Path::root("mesh");
+    let (hash, reading) = mesh_reading(&path, path.required(request.mesh.as_ref())?)?;
+    if !matches!(reading.mode, MeshUse::Hull | MeshUse::Decompose) {
+        return Err(path.field("mode").invalid("makes no convex pieces: HULL and DECOMPOSE do"));
+    }
+    if let Some(accuracy) = request.accuracy.filter(|accuracy| !(accuracy.is_finite() && *accuracy > 0.0)) {
+        return Err(Path::root("accuracy").invalid(format!("{accuracy} is not a positive number of metres")));
+    }
+    Ok(MeshCardRequest { hash, reading, accuracy: request.accuracy })
+}
+
+/// What is wrong with the mesh of a [`mesh_card_request`].
+#[must_use]
+pub fn unusable_mesh(error: UnusableMesh) -> ServiceError {
+    unusable(&Path::root("mesh"), error)
+}
+
+fn unusable(path: &Path<'_>, error: UnusableMesh) -> ServiceError {
+    match error {
         UnusableMesh::Missing(hash) => ServiceError::NotFound { what: "asset", name: hash.to_string() },
         UnusableMesh::TooLarge(exceeded) => ServiceError::Limit(exceeded),
         UnusableMesh::File(error) => path.field("sha256").invalid(error),
         UnusableMesh::Shape(error) => path.invalid(error),
-    })
+    }
 }
 
 fn compound(path: &Path<'_>, compound: &v1::Compound, library: &Library) -> Result<Shape, ServiceError> {

@@ -10,6 +10,7 @@ mod robot;
 mod scene;
 
 pub use answer::{NotAnAnswer, answer};
+pub use geometry::{mesh_card_request, unusable_mesh};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::change;
