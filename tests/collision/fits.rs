@@ -68,7 +68,8 @@ fn a_bar_without_the_other_is_not_inflated_and_loses_that() {
     let mesh = Arc::new(TriangleMesh::solid(vertices.clone(), triangles).unwrap());
     let bar: Vec<Vec3> = vertices.iter().filter(|v| v.y < 0.5).copied().collect();
     let found = fit(&mesh, &of_hulls(&[bar]), &UNLIMITED);
-    holds(&found.loss, 0.8);
+    // From the far corner (0, 1) to that between the bars, (0.2, 0.2).
+    holds(&found.loss, 0.68_f64.sqrt());
     holds(&found.inflation, 0.0);
 }
 
