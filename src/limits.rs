@@ -47,8 +47,10 @@ pub struct Limits {
     pub max_compound_parts: usize,
     /// Samples of one height field.
     pub max_height_samples: usize,
-    /// Points of one point cloud.
+    /// Points of one point cloud, or of one insertion into voxels.
     pub max_cloud_points: usize,
+    /// Cells of one map of voxels.
+    pub max_voxel_cells: usize,
     /// Groups of one body.
     pub max_groups: usize,
     /// Size of one uploaded file, bytes.
@@ -96,6 +98,7 @@ impl Default for Limits {
             max_compound_parts: 10_000,
             max_height_samples: 20_000_000,
             max_cloud_points: 5_000_000,
+            max_voxel_cells: 20_000_000,
             max_groups: 64,
             max_asset_bytes: 256 << 20,
             max_total_asset_bytes: 2 << 30,
@@ -153,6 +156,7 @@ impl Limits {
             max_compound_parts,
             max_height_samples,
             max_cloud_points,
+            max_voxel_cells,
             max_groups,
             max_asset_bytes,
             max_total_asset_bytes,
@@ -196,7 +200,8 @@ impl Limits {
             row("max_mesh_triangles", max_mesh_triangles, "triangles per mesh", EXHAUSTED),
             row("max_compound_parts", max_compound_parts, "parts per compound", EXHAUSTED),
             row("max_height_samples", max_height_samples, "samples per height field", EXHAUSTED),
-            row("max_cloud_points", max_cloud_points, "points per point cloud", EXHAUSTED),
+            row("max_cloud_points", max_cloud_points, "points per point cloud or insertion", EXHAUSTED),
+            row("max_voxel_cells", max_voxel_cells, "cells per map of voxels", EXHAUSTED),
             row("max_groups", max_groups, "groups per body", EXHAUSTED),
             row("max_asset_bytes", max_asset_bytes, "bytes per uploaded file", EXHAUSTED),
             row("max_total_asset_bytes", max_total_asset_bytes, "bytes of all uploaded files", EXHAUSTED),

@@ -11,7 +11,8 @@ use serde_json::Value;
 
 use super::json_field::{Field, FieldError};
 use crate::geometry::{
-    Compound, Grid, HeightField, InvalidShape, Part, PointCloud, Pose, Quaternion, Shape, TriangleMesh,
+    Compound, Grid, HeightField, InvalidShape, Part, PointCloud, Pose, Quaternion, Shape, TriangleMesh, Voxels,
+    decomposed,
 };
 
 /// Two placed shapes.
@@ -74,10 +75,11 @@ pub fn read_shape(shape: &Field) -> Result<Shape, FieldError> {
         "segment" => (&["a", "b"], Shape::segment(vector("a")?, vector("b")?)),
         "halfspace" | "half_space" => (&["normal", "offset"], Shape::half_space(vector("normal")?, number("offset")?)),
         "plane" => (&["normal", "offset"], Shape::plane(vector("normal")?, number("offset")?)),
-        "mesh" => (&["vertices", "triangles", "solid"], read_mesh(&params)?),
+        "mesh" => (&["vertices", "triangles", "solid", "decompose"], read_mesh(&params)?),
         "compound" => (&["parts"], read_compound(&params)?),
         "height_field" => (&["rows", "columns", "spacing", "heights", "floor"], read_height_field(&params)?),
         "point_cloud" => (&["points", "radius"], read_point_cloud(&params)?),
+        "voxels" => (&["resolution", "points", "cells"], read_voxels(&params)?),
         other => return Err(kind.error(format!("no shape is called {other:?}"))),
     };
     params.only(&[known, &["margin"]].concat())?;
@@ -96,6 +98,12 @@ fn read_mesh(params: &Field) -> Result<Result<Shape, InvalidShape>, FieldError> 
         triangles.push([a.index()?, b.index()?, c.index()?]);
     }
     let solid = params.optional("solid").map(|field| field.boolean()).transpose()?.unwrap_or(false);
+    if params.optional("decompose").map(|field| field.boolean()).transpose()?.unwrap_or(false) {
+        if solid {
+            return Err(params.error("is solid and to be decomposed: the pieces of a decomposition are solid anyway"));
+        }
+        return Ok(decomposed(&vertices, &triangles).map(|pieces| Shape::compound(Arc::new(pieces))));
+    }
     let mesh =
         if solid { TriangleMesh::solid(vertices, triangles) } else { TriangleMesh::surface(vertices, triangles) };
     Ok(mesh.map(|mesh| Shape::mesh(Arc::new(mesh))))
@@ -121,6 +129,17 @@ fn read_point_cloud(params: &Field) -> Result<Result<Shape, InvalidShape>, Field
     let points = params.member("points")?.vectors()?;
     let radius = params.optional("radius").map(|field| field.number()).transpose()?.unwrap_or(0.0);
     Ok(PointCloud::new(&points).and_then(|cloud| Shape::point_cloud(Arc::new(cloud), radius)))
+}
+
+fn read_voxels(params: &Field) -> Result<Result<Shape, InvalidShape>, FieldError> {
+    let points = params.optional("points").map(|field| field.vectors()).transpose()?.unwrap_or_default();
+    let mut cells = Vec::new();
+    for cell in params.optional("cells").map(|field| field.elements()).transpose()?.unwrap_or_default() {
+        let [i, j, k] = cell.exactly()?;
+        cells.push([i.integer()?, j.integer()?, k.integer()?]);
+    }
+    let map = Voxels::new(params.member("resolution")?.number()?);
+    Ok(map.and_then(|map| map.with_cells(&cells)?.with_points(&points)).map(Shape::voxels))
 }
 
 /// The pose of a frame in the world, or in the frame of a compound.
@@ -207,6 +226,7 @@ mod tests {
             ("compound", json!({"parts": [{"shape": ball, "pose": pose}]})),
             ("height_field", json!({"rows": 2, "columns": 2, "spacing": [1, 2], "heights": [0, 1, 2, 3], "floor": -1})),
             ("point_cloud", json!({"points": [v, v], "radius": 0.1})),
+            ("voxels", json!({"resolution": 0.5, "points": [v], "cells": [[-1, 2, 0]]})),
         ] {
             let mut params = params;
             let plain = shape(json!({"type": kind, "params": params})).unwrap();
@@ -259,6 +279,11 @@ mod tests {
                 "a.params.columns: is another number, not an index",
             ),
             (json!({"type": "point_cloud", "params": {"points": []}}), "a.params: points is empty"),
+            (json!({"type": "voxels", "params": {"resolution": 0}}), "a.params: resolution is not positive: 0"),
+            (
+                json!({"type": "voxels", "params": {"resolution": 1, "cells": [[0, 1.5, 0]]}}),
+                "a.params.cells[0][1]: is another number, not a whole number",
+            ),
             (
                 json!({"type": "point_cloud", "params": {"points": [[0, 0, 0]], "radius": -1}}),
                 "a.params: radius is negative: -1",

@@ -95,6 +95,15 @@ impl<'a> Field<'a> {
         whole.ok_or_else(|| self.error(not("an index", self.value)))
     }
 
+    /// A whole number of either sign that fits `i32`.
+    ///
+    /// # Errors
+    /// This is no such number.
+    pub fn integer(&self) -> Found<i32> {
+        let whole = self.value.as_i64().and_then(|n| i32::try_from(n).ok());
+        whole.ok_or_else(|| self.error(not("a whole number", self.value)))
+    }
+
     /// A text.
     ///
     /// # Errors

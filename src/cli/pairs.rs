@@ -159,7 +159,9 @@ fn answer(line: &[u8], pairs: &Pairs) -> Line {
     let outcome = match case.map(|case| measure(&case, pairs)) {
         Ok(Ok(measured)) => Outcome::Ok(measured),
         Ok(Err(NoSeparation::Unclaimed(unclaimed))) => Outcome::Unsupported { message: unclaimed.to_string() },
-        Ok(Err(unbounded @ NoSeparation::Unbounded { .. })) => Outcome::Invalid { message: unbounded.to_string() },
+        Ok(Err(none @ (NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }))) => {
+            Outcome::Invalid { message: none.to_string() }
+        }
         Err(message) => Outcome::Invalid { message },
     };
     Line { id, outcome }

@@ -60,6 +60,8 @@ pub enum MeshMode {
     Exact,
     /// The convex hull of the vertices.
     Hull,
+    /// A few convex hulls that together are nearly the mesh.
+    Decompose,
 }
 
 /// `--want`.
@@ -94,6 +96,7 @@ async fn answer_all(states: &States, output: &mut dyn Write) -> Result<(), Faile
     let mesh = match states.mesh {
         MeshMode::Exact => MeshUse::Exact,
         MeshMode::Hull => MeshUse::Hull,
+        MeshMode::Decompose => MeshUse::Decompose,
     };
     let model = backend.load_robot(&files, mesh).await?;
     let lines = read_states(&states.states, scenes.len(), model.degrees_of_freedom).map_err(Failed::input)?;

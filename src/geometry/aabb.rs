@@ -64,6 +64,15 @@ impl Aabb {
         Self { min: self.min.add_scalar(-distance), max: self.max.add_scalar(distance) }
     }
 
+    /// Its eight corners: the greatest coordinate where bit 0 (x), 1 (y) or 2 (z) of the place is set.
+    #[must_use]
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 1 { self.max[axis] } else { self.min[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+
     /// Centre, metres.
     #[must_use]
     pub fn center(&self) -> Vec3 {

@@ -42,8 +42,11 @@ impl Ball {
                 compound.parts().iter().filter_map(reach).fold(0.0, f64::max)
             }
             Core::Column(column) => farthest(&column.corners()),
+            Core::Block(block) => farthest(&block.corners()),
             // Of many points the box tells enough: its middle is that of the ball.
-            Core::HeightField(_) | Core::PointCloud(_) => length(shape.core().bounds()?.half_extents()),
+            Core::HeightField(_) | Core::PointCloud(_) | Core::Voxels(_) => {
+                length(shape.core().bounds()?.half_extents())
+            }
             Core::HalfSpace { .. } | Core::Plane { .. } => return None,
         };
         // Differences from a middle far from the origin round by the middle's own size.

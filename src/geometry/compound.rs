@@ -29,6 +29,10 @@ impl Compound {
         }
         let mut bounds = Aabb::empty();
         for (i, part) in parts.iter().enumerate() {
+            if part.shape.is_empty() {
+                let source = Box::new(InvalidShape::Empty { field: part.shape.kind() });
+                return Err(InvalidShape::Part { part: i, source });
+            }
             let placed = part.shape.placed_bounds(&part.pose.placement());
             let nested = matches!(part.shape.core(), Core::Compound(_));
             let (Some(placed), false) = (placed, nested) else {
@@ -53,6 +57,13 @@ impl Compound {
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// Bytes on the heap, those of hulls included; meshes and other shared parts are not counted.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let hull = |part: &Part| if let Core::Convex(hull) = part.shape.core() { hull.memory() } else { 0 };
+        size_of_val(&*self.parts) + self.parts.iter().map(hull).sum::<usize>()
     }
 
     /// Every length multiplied by `factor`.

@@ -48,6 +48,13 @@ impl ConvexHull {
         &self.points
     }
 
+    /// Bytes on the heap.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        let surface = self.surface.as_ref().map_or(0, HullSurface::memory);
+        size_of_val(&*self.points) + self.scan.memory() + surface + self.starts.as_ref().map_or(0, StartTable::memory)
+    }
+
     /// The triangles of the hull; none for hulls that are flat, or whose surface could not be proved convex.
     #[must_use]
     pub fn surface(&self) -> Option<&HullSurface> {

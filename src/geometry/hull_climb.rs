@@ -29,6 +29,11 @@ const CELLS: usize = 9;
 const FLOODED: usize = 32;
 
 impl StartTable {
+    /// Bytes on the heap.
+    pub fn memory(&self) -> usize {
+        size_of_val(&*self.vertices)
+    }
+
     pub fn new(points: &[Vec3], surface: &HullSurface) -> Self {
         let mut vertices = Vec::with_capacity(6 * CELLS * CELLS);
         let mut vertex = 0;

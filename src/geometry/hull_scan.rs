@@ -23,6 +23,11 @@ pub(super) struct Scan {
 }
 
 impl Scan {
+    /// Bytes on the heap.
+    pub fn memory(&self) -> usize {
+        size_of_val(&*self.blocks)
+    }
+
     pub fn new(points: &[Vec3]) -> Self {
         let block = |chunk: &[Vec3]| {
             [0, 1, 2].map(|axis| std::array::from_fn(|lane| chunk.get(lane).unwrap_or(&points[0])[axis]))

@@ -28,6 +28,11 @@ pub struct HullSurface {
 const EXACT: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 impl HullSurface {
+    /// Bytes on the heap.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&*self.triangles) + size_of_val(&*self.starts) + size_of_val(&*self.neighbours)
+    }
+
     /// The surface, if it is proved to be that of the convex hull of `points` and every point is a vertex of it.
     pub(super) fn proved(points: &[Vec3], triangles: &[[u32; 3]]) -> Option<Self> {
         let is_exact = |c: &f64| *c == 0.0 || EXACT.contains(&c.abs());

@@ -81,6 +81,15 @@ pub enum InvalidShape {
         /// Height of the floor, metres.
         floor: f64,
     },
+    /// A mesh that is a point, or one on which the decomposition gives up.
+    #[error("the mesh has no extent, or cannot be cut into convex pieces")]
+    NotDecomposed,
+    /// A box whose least corner is above its greatest.
+    #[error("min.{axis} is above max.{axis}")]
+    UpsideDown {
+        /// Along which axis.
+        axis: &'static str,
+    },
     /// A normal without a direction.
     #[error("normal is zero")]
     ZeroNormal,

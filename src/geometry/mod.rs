@@ -8,6 +8,7 @@ mod bounding_ball;
 mod box_cast;
 mod compound;
 mod convex_hull;
+mod decomposition;
 mod height_field;
 mod hull_builder;
 mod hull_climb;
@@ -18,6 +19,7 @@ mod invalid_shape;
 mod length;
 pub mod mesh_file;
 mod mesh_tree;
+mod octree;
 mod oriented_box;
 mod point_cloud;
 mod pose;
@@ -28,12 +30,14 @@ pub mod tolerance;
 mod triangle_mesh;
 mod twin;
 pub mod vector;
+mod voxels;
 
 pub use aabb::Aabb;
 pub use bounding_ball::Ball;
 pub use box_cast::BoxCast;
 pub use compound::{Compound, Part};
 pub use convex_hull::ConvexHull;
+pub use decomposition::decomposed;
 pub use height_field::{Column, Grid, HeightField, Patch};
 pub use hull_interior::HullInterior;
 pub use hull_surface::HullSurface;
@@ -48,6 +52,7 @@ pub use rigid_motion::{InvalidMotion, LARGEST_TURN, RigidMotion};
 pub use shape::{Core, Shape};
 pub use triangle_mesh::TriangleMesh;
 pub use twin::{Twin, TwinVec3};
+pub use voxels::{Cells, Voxels};
 
 /// A point, a direction or a difference of points.
 pub type Vec3 = nalgebra::Vector3<f64>;

@@ -6,7 +6,9 @@
 use std::sync::Arc;
 
 use super::tolerance::LARGEST_LENGTH;
-use super::{Aabb, Column, Compound, ConvexHull, HeightField, InvalidShape, Placement, PointCloud, TriangleMesh, Vec3};
+use super::{
+    Aabb, Column, Compound, ConvexHull, HeightField, InvalidShape, Placement, PointCloud, TriangleMesh, Vec3, Voxels,
+};
 
 /// A shape in its own frame: a core, and the radius of a ball swept over it (their Minkowski sum). Metres.
 #[derive(Clone, Debug)]
@@ -80,8 +82,12 @@ pub enum Core {
     HeightField(Arc<HeightField>),
     /// Points; with a swept radius the union of balls around them.
     PointCloud(Arc<PointCloud>),
+    /// Occupied cells of a grid; may be none.
+    Voxels(Voxels),
     /// What lies under one triangle of a height field.
     Column(Column),
+    /// A box along the axes, anywhere: a cell of voxels.
+    Block(Aabb),
 }
 
 /// Checks that a length is finite, not negative and within reach.
@@ -233,6 +239,25 @@ impl Shape {
         Ok(Self::new(Core::PointCloud(cloud), length("radius", radius)?))
     }
 
+    /// The occupied cells of a map.
+    #[must_use]
+    pub fn voxels(map: Voxels) -> Self {
+        Self::new(Core::Voxels(map), 0.0)
+    }
+
+    /// The same shape with another map in it, swept by as much; none unless it is a map.
+    #[must_use]
+    pub fn with_voxels(&self, map: Voxels) -> Option<Self> {
+        let Core::Voxels(_) = self.core else { return None };
+        Some(Self { rest_of_radius: self.rest_of_radius, ..Self::new(Core::Voxels(map), self.swept_radius) })
+    }
+
+    /// Whether there is nothing in it: true of voxels without a cell, and of nothing else.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        matches!(&self.core, Core::Voxels(map) if map.is_empty())
+    }
+
     /// The same shape with `extra` metres added to its swept radius. A half-space or plane moves or thickens by that
     /// much; a compound grows part by part.
     ///
@@ -299,18 +324,20 @@ impl Shape {
             Core::Compound(_) => "compound",
             Core::HeightField(_) => "height_field",
             Core::PointCloud(_) => "point_cloud",
+            Core::Voxels(_) => "voxels",
             Core::Column(_) => "column",
+            Core::Block(_) => "block",
         }
     }
 
-    /// Bounds in the shape's own frame, swept radius included; none for half-spaces and planes.
+    /// Bounds in the shape's own frame, swept radius included; none for half-spaces and planes, nor for what is empty.
     #[must_use]
     pub fn bounds(&self) -> Option<Aabb> {
         self.bounds
     }
 
-    /// A box, in the frame the shape is placed in, that surely holds the placed shape; none when unbounded.
-    /// Rounded outwards: it may be larger than the least one by rotation and by rounding, never smaller.
+    /// A box, in the frame the shape is placed in, that surely holds the placed shape; none when unbounded or
+    /// empty. Rounded outwards: it may be larger than the least one by rotation and by rounding, never smaller.
     #[must_use]
     pub fn placed_bounds(&self, at: &Placement) -> Option<Aabb> {
         let local = self.bounds?;
@@ -345,6 +372,8 @@ impl Core {
             Self::Compound(compound) => Shape::compound(Arc::new(compound.scaled(f)?)),
             Self::HeightField(field) => Shape::height_field(Arc::new(field.scaled(f)?)),
             Self::PointCloud(cloud) => Shape::point_cloud(Arc::new(cloud.scaled(f)?), 0.0)?,
+            Self::Voxels(map) => Shape::voxels(map.scaled(f)?),
+            Self::Block(Aabb { min, max }) => return Ok(Self::Block(Aabb { min: min * f, max: max * f })),
             Self::Column(Column { top, floor }) => {
                 return Ok(Self::Column(Column { top: top.map(|p| p * f), floor: floor * f }));
             }
@@ -372,7 +401,9 @@ impl Core {
             Self::Compound(compound) => Some(compound.bounds()),
             Self::HeightField(field) => Some(field.bounds()),
             Self::PointCloud(cloud) => Some(cloud.bounds()),
+            Self::Voxels(map) => map.bounds(),
             Self::Column(column) => Some(Aabb::around(column.corners())),
+            Self::Block(block) => Some(*block),
         }
     }
 }

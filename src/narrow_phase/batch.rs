@@ -59,9 +59,9 @@ fn kind(shape: &Shape) -> u16 {
         Core::Point => 0,
         Core::Segment(_) => 1,
         Core::AxialSegment { .. } => 2,
-        Core::Cuboid { .. } => 3,
+        Core::Cuboid { .. } | Core::Block(_) => 3,
         Core::Triangle(_) => 4,
-        Core::Convex(_) => 5,
+        Core::Convex(_) | Core::Column(_) => 5,
         Core::Cylinder { .. } => 6,
         Core::Cone { .. } => 7,
         Core::Ellipsoid { .. } => 8,
@@ -71,6 +71,6 @@ fn kind(shape: &Shape) -> u16 {
         Core::Compound(_) => 12,
         Core::HeightField(_) => 13,
         Core::PointCloud(_) => 14,
-        Core::Column(_) => 15,
+        Core::Voxels(_) => 15,
     }
 }

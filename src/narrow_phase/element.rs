@@ -112,7 +112,9 @@ impl<'a> Element<'a> {
             | Core::Mesh(_)
             | Core::HeightField(_)
             | Core::PointCloud(_)
+            | Core::Voxels(_)
             | Core::Column(_)
+            | Core::Block(_)
             | Core::Compound(_) => None,
         }
     }

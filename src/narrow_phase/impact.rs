@@ -129,7 +129,7 @@ pub fn impact(
     motion_b: &RigidMotion,
     goal: &ImpactGoal,
 ) -> Result<Impact, NoImpact> {
-    if a.bounds().is_none() && b.bounds().is_none() {
+    if !a.is_empty() && !b.is_empty() && a.bounds().is_none() && b.bounds().is_none() {
         return Err(NoImpact::Unbounded { a: a.kind(), b: b.kind() });
     }
     let grown = if goal.margin > 0.0 { Some(a.swept(goal.margin)?) } else { None };
@@ -160,7 +160,8 @@ fn bodies_of(shape: &Shape) -> impl Iterator<Item = Body<'_>> {
     let parts = (0..)
         .zip(parts)
         .map(move |(number, part)| Body { shape: &part.shape, element: Element::new(shape, Some((number, part))) });
-    alone.into_iter().chain(parts)
+    // Nothing meets a shape without a point.
+    alone.into_iter().chain(parts).filter(|body| !body.shape.is_empty())
 }
 
 fn is_solid_mesh(shape: &Shape) -> bool {
@@ -205,7 +206,9 @@ impl<'a> Search<'a> {
         let goal = Goal { stop: self.asked.stop, ..Goal::verdict() };
         let found = match separation(a, b, &at_a, &at_b, &goal) {
             Ok(found) => found,
-            Err(NoSeparation::Unbounded { .. } | NoSeparation::Unclaimed(_)) => return None,
+            Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. } | NoSeparation::Unclaimed(_)) => {
+                return None;
+            }
         };
         self.cost += found.cost;
         if found.bracket.upper <= 0.0 {
@@ -372,11 +375,11 @@ impl<'a> Grove<'a> {
     }
 
     /// None stands for the body itself.
-    fn root(&self) -> Option<AnyNode> {
+    fn root(&self) -> Option<AnyNode<'a>> {
         self.tree.as_ref().map(Tree::root)
     }
 
-    fn inside(&self, node: Option<AnyNode>) -> Inside<Option<AnyNode>, Option<AnyLeaf>> {
+    fn inside(&self, node: Option<AnyNode<'a>>) -> Inside<Option<AnyNode<'a>>, Option<AnyLeaf>> {
         let Some((tree, node)) = self.tree.as_ref().zip(node) else { return Inside::Leaf(None) };
         match tree.inside(node) {
             Inside::Children(children) => Inside::Children(children.map(Some)),
@@ -384,13 +387,13 @@ impl<'a> Grove<'a> {
         }
     }
 
-    fn size(&self, node: Option<AnyNode>) -> f64 {
+    fn size(&self, node: Option<AnyNode<'a>>) -> f64 {
         self.tree.as_ref().zip(node).map_or(0.0, |(tree, node)| tree.size(node))
     }
 
     /// What is around everything below a node.
-    fn outline(&self, node: Option<AnyNode>) -> Element<'a> {
-        let boxed = |(tree, node): (&Growth, AnyNode)| self.element.boxed(&tree.bounds(node), self.slack);
+    fn outline(&self, node: Option<AnyNode<'a>>) -> Element<'a> {
+        let boxed = |(tree, node): (&Growth<'a>, AnyNode<'a>)| self.element.boxed(&tree.bounds(node), self.slack);
         self.tree.as_ref().zip(node).map_or_else(|| self.element.clone(), boxed)
     }
 

@@ -83,7 +83,9 @@ impl Middle {
             | Core::Compound(_)
             | Core::HeightField(_)
             | Core::PointCloud(_)
-            | Core::Column(_) => None,
+            | Core::Voxels(_)
+            | Core::Column(_)
+            | Core::Block(_) => None,
         }
     }
 }
@@ -119,6 +121,8 @@ fn gauge(core: &Core, t: Vec3) -> f64 {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => f64::INFINITY,
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => f64::INFINITY,
     }
 }

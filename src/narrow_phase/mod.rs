@@ -8,7 +8,8 @@
 //! separating axes (`sat`), Newton's method (`smooth`), or one for comparison (`frank_wolfe`, `qp`); `line_of_centers` and
 //! `far_apart` answer some verdicts before. What doubles leave open `escalation` hands to `revolution`, `double_double` and
 //! `exact`. Below lie the Minkowski difference, its simplices and polytope, and the support functions. [`touching_pairs`] is a
-//! second door, for all touching triangles; [`separations`] is the first one for many pairs at once.
+//! second door, for all touching triangles; [`separations`] is the first one for many pairs at once, and [`fit`] asks how well
+//! a decomposition fits its mesh.
 //!
 //! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
 //! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
@@ -27,6 +28,7 @@ mod epa;
 mod escalation;
 mod exact;
 mod far_apart;
+mod fit;
 mod forecast;
 mod frank_wolfe;
 mod given;
@@ -70,6 +72,7 @@ mod wall;
 mod witness;
 
 pub use batch::{PairQuestion, separations};
+pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
 pub use outcome::{Bracket, Cost, Separation, Termination};

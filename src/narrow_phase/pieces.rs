@@ -96,7 +96,9 @@ pub(super) fn unbounded_of<'a>(piece: &'a Piece) -> Option<Unbounded<'a>> {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => return None,
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => return None,
     };
     Some(Unbounded {
         normal,

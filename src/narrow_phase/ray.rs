@@ -164,6 +164,9 @@ impl Search {
         goal: &RayGoal,
     ) {
         let shape = part.map_or(whole, |(_, part)| &part.shape);
+        if shape.is_empty() {
+            return;
+        }
         let element = Element::new(whole, part);
         let from_piece = ray.origin() - at.translation;
         let start = at.direction_into(from_piece);

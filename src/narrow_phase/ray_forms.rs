@@ -31,6 +31,11 @@ pub(super) fn convex(ray: &Local, core: &Core, radius: f64) -> Form {
             let error = ray.error + 2.0 * UNIT_ROUNDOFF * (length(ray.start) + length(*p));
             ball(&Local { start: ray.start - p, error, ..*ray }, radius)
         }
+        Core::Block(block) if radius == 0.0 => {
+            let off = 8.0 * UNIT_ROUNDOFF * (length(ray.start) + length(block.min) + length(block.max));
+            let shifted = Local { start: ray.start - block.center(), error: ray.error + off, ..*ray };
+            cuboid(&shifted, block.half_extents())
+        }
         Core::Triangle(corners) if radius == 0.0 => match ray_trees::triangle(ray, corners) {
             Crossing::Crosses(met) => Form::Known(met),
             Crossing::Misses => Form::Known(Met::nothing()),
@@ -49,7 +54,9 @@ pub(super) fn convex(ray: &Local, core: &Core, radius: f64) -> Form {
         | Core::Mesh(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
+        | Core::Voxels(_)
         | Core::Column(_)
+        | Core::Block(_)
         | Core::Compound(_) => Form::Unknown,
     }
 }

@@ -1,4 +1,4 @@
-//! Which part of a mesh, a point cloud or terrain does a ray meet first? Down its tree, nearest boxes first.
+//! Which part of a mesh, a point cloud, terrain or a map of cells does a ray meet first? Down its tree, nearest boxes first.
 //!
 //! A crossing is proved by the signs of volumes, each by more than what the places of the points may be off (`docs/derivations/mesh.md`,
 //! "Crossing"), and where it is by the plane of the triangle. A ray through an edge or a corner crosses no triangle for sure, but it does cross
@@ -147,6 +147,8 @@ fn surface_of(core: &Core) -> Option<[Vec3; 3]> {
         | Core::Mesh(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
+        | Core::Voxels(_)
+        | Core::Block(_)
         | Core::Compound(_) => None,
     }
 }

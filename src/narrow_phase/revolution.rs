@@ -119,7 +119,9 @@ impl Profile {
             | Core::Compound(_)
             | Core::HeightField(_)
             | Core::PointCloud(_)
-            | Core::Column(_) => None,
+            | Core::Voxels(_)
+            | Core::Column(_)
+            | Core::Block(_) => None,
         }
     }
 

@@ -48,7 +48,9 @@ fn placed(body: &Convex) -> Option<Half> {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => return None,
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => return None,
     };
     Some(Half { middle, half, square: half.norm_squared(), reach: length(middle) + length(half) })
 }

@@ -25,6 +25,14 @@ pub enum NoSeparation {
         /// Kind of the second.
         b: &'static str,
     },
+    /// Nothing is near or far from a shape without a point: voxels without a cell.
+    #[error("a {a} and a {b} have no signed distance, as there is nothing in one of them")]
+    Empty {
+        /// Kind of the first shape.
+        a: &'static str,
+        /// Kind of the second.
+        b: &'static str,
+    },
     /// The solver that was asked for does not take such shapes.
     #[error(transparent)]
     Unclaimed(#[from] Unclaimed),
@@ -36,7 +44,7 @@ pub enum NoSeparation {
 /// pair of pieces: in an overlap the deepest pair, not a translation that frees the whole.
 ///
 /// # Errors
-/// [`NoSeparation`] when neither shape has bounds, or the goal's solver does not take one of them.
+/// [`NoSeparation`] when neither shape has bounds, one is empty, or the goal's solver does not take one of them.
 pub fn separation(
     a: &Shape,
     b: &Shape,
@@ -79,6 +87,9 @@ pub fn separation_again(
             given: Given::alone(b, at_b),
         };
         return Ok(convex::separation_again(one, other, goal, cache));
+    }
+    if a.is_empty() || b.is_empty() {
+        return Err(NoSeparation::Empty { a: a.kind(), b: b.kind() });
     }
     if let Some(found) = far_apart::parted(a, b, at_a, at_b, goal) {
         return Ok(found);

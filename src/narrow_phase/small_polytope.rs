@@ -65,7 +65,9 @@ impl SmallPolytope {
             | Core::Compound(_)
             | Core::HeightField(_)
             | Core::PointCloud(_)
-            | Core::Column(_) => return None,
+            | Core::Voxels(_)
+            | Core::Column(_)
+            | Core::Block(_) => return None,
         }
         Some(polytope)
     }

@@ -64,7 +64,9 @@ fn is_smooth(core: &Core) -> bool {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => false,
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => false,
     }
 }
 

@@ -6,10 +6,10 @@ use super::inside::is_inside;
 use super::outcome::{Bracket, Separation, Termination};
 use super::pieces::{Piece, Pieces, least_of_pieces, mesh_of};
 use super::support::radius;
-use super::trees::any_point;
+use super::trees::{Growth, Inside, Tree, any_point, has_loose_parts};
 use super::walk::walk;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Aabb, Core, Mat3, Placement, PointCloud, Shape, TriangleMesh, Vec3, length};
+use crate::geometry::{Aabb, Core, Mat3, OrientedBox, Placement, Shape, Siblings, TriangleMesh, Vec3, length};
 
 /// The separation of the surfaces of two pieces, corrected where one is wholly inside the other and that is solid.
 ///
@@ -74,36 +74,38 @@ fn contains(outer: &Piece, inner: &Piece, gap: f64, goal: &Goal) -> Option<bool>
         }
         return known;
     }
-    if let Core::PointCloud(cloud) = core {
-        return holds_any(cloud, &mesh.bounds().grown(error), &inner_in_outer, gap, &is_in, goal);
+    if has_loose_parts(core) {
+        return holds_any(inner, &mesh.bounds().grown(error), &inner_in_outer, gap, &is_in, goal);
     }
     any_point(core).map_or(Some(false), is_in)
 }
 
-/// Whether any point of a cloud, whose frame is at `place`, is in; none where that is open. What is not in the box is not.
+/// Whether any part of a piece, whose frame is at `place`, is in; none where that is open. What is not in the box is not.
 fn holds_any(
-    cloud: &PointCloud,
+    inner: &Piece,
     around: &Aabb,
     place: &Placement,
     gap: f64,
     is_in: &impl Fn(Vec3) -> Option<bool>,
     goal: &Goal,
 ) -> Option<bool> {
+    let alone = Siblings::alone(&OrientedBox::upright(&inner.shape.core().bounds()?));
+    let tree = Growth::of(inner, &alone)?;
     let mut known = Some(false);
-    let mut open = vec![cloud.root()];
-    while let Some(run) = open.pop() {
-        let bounds = cloud.bounds_of(run);
-        let half = place.rotation.abs() * bounds.half_extents();
-        if !Aabb::centred(place.point(bounds.center()), half).grown(1e-9 * half.amax()).overlaps(around) {
+    let mut open = vec![tree.root()];
+    while let Some(node) = open.pop() {
+        let OrientedBox { center, half_extents, .. } = tree.bounds(node);
+        let half = place.rotation.abs() * half_extents;
+        if !Aabb::centred(place.point(center), half).grown(1e-9 * half.amax()).overlaps(around) {
             continue;
         }
         if (goal.stop)() {
             return None;
         }
-        match cloud.halves(run) {
+        match tree.inside(node) {
             // No surface is between two points that are nearer to one another than to it.
-            Some(halves) if !(2.0 * length(bounds.half_extents()) < 0.999 * gap) => open.extend(halves),
-            Some(_) | None => match is_in(cloud.at(run.start())) {
+            Inside::Children(children) if !(2.0 * length(half_extents) < 0.999 * gap) => open.extend(children),
+            Inside::Children(_) | Inside::Leaf(_) => match is_in(tree.any_point_in(node)) {
                 Some(true) => return Some(true),
                 Some(false) => {}
                 None => known = None,

@@ -121,8 +121,8 @@ impl Solver {
             Core::Cylinder { .. } => Err("a cylinder is no polytope".to_owned()),
             Core::Cone { .. } => Err("a cone is no polytope".to_owned()),
             Core::Ellipsoid { .. } => Err("an ellipsoid is no polytope".to_owned()),
-            Core::HeightField(_) | Core::Column(_) if self == Self::Sat => {
-                Err("the columns of a height field have no list of faces".to_owned())
+            Core::HeightField(_) | Core::Column(_) | Core::Voxels(_) | Core::Block(_) if self == Self::Sat => {
+                Err("columns of terrain and cells of voxels have no list of faces".to_owned())
             }
             Core::Compound(compound) => {
                 compound.parts().iter().try_for_each(|part| self.takes_polytope(part.shape.core()))
@@ -144,7 +144,9 @@ impl Solver {
             | Core::Mesh(_)
             | Core::HeightField(_)
             | Core::PointCloud(_)
-            | Core::Column(_) => Ok(()),
+            | Core::Voxels(_)
+            | Core::Column(_)
+            | Core::Block(_) => Ok(()),
         }
     }
 }

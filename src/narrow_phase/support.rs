@@ -38,12 +38,18 @@ pub(super) fn farthest(core: &Core, direction: Vec3, hint: u32) -> (Vec3, u32) {
         Core::Segment(ends) => first_farthest(ends, d),
         Core::Cylinder { .. } | Core::Cone { .. } | Core::Ellipsoid { .. } => (round(core, d), 0),
         Core::Column(column) => first_farthest(&column.corners(), d),
+        Core::Block(block) => {
+            let corner = u32::from(d.x >= 0.0) | u32::from(d.y >= 0.0) << 1 | u32::from(d.z >= 0.0) << 2;
+            let pick = |axis: usize| if corner >> axis & 1 == 1 { block.max[axis] } else { block.min[axis] };
+            (Vec3::new(pick(0), pick(1), pick(2)), corner)
+        }
         Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => {
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => {
             unreachable!("only convex, bounded cores have a support function")
         }
     }
@@ -80,7 +86,9 @@ fn round(core: &Core, d: Vec3) -> Vec3 {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => unreachable!("not round"),
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => unreachable!("not round"),
     }
 }
 
@@ -97,6 +105,7 @@ pub(super) fn corners(core: &Core) -> Vec<Vec3> {
         Core::Triangle(corners) => corners.to_vec(),
         Core::Segment(ends) => ends.to_vec(),
         Core::Column(column) => column.corners().to_vec(),
+        Core::Block(block) => block.corners().to_vec(),
         Core::Cylinder { .. }
         | Core::Cone { .. }
         | Core::Ellipsoid { .. }
@@ -105,7 +114,8 @@ pub(super) fn corners(core: &Core) -> Vec<Vec3> {
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => Vec::new(),
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => Vec::new(),
     }
 }
 
@@ -117,7 +127,8 @@ pub(super) fn is_convex(core: &Core) -> bool {
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => false,
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => false,
         Core::Point
         | Core::Cuboid { .. }
         | Core::AxialSegment { .. }
@@ -127,7 +138,8 @@ pub(super) fn is_convex(core: &Core) -> bool {
         | Core::Convex(_)
         | Core::Triangle(_)
         | Core::Segment(_)
-        | Core::Column(_) => true,
+        | Core::Column(_)
+        | Core::Block(_) => true,
     }
 }
 
@@ -151,6 +163,8 @@ pub(super) fn radius(core: &Core) -> f64 {
         Core::Compound(compound) => box_corner(compound.bounds()),
         Core::HeightField(field) => box_corner(field.bounds()),
         Core::PointCloud(cloud) => box_corner(cloud.bounds()),
+        Core::Voxels(map) => map.bounds().map_or(0.0, box_corner),
+        Core::Block(block) => box_corner(*block),
         Core::Column(column) => column.corners().iter().map(|p| length(*p)).fold(0.0, f64::max),
     }
 }
@@ -212,6 +226,7 @@ pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
         }
         Core::Point => (n == 0).then_some(ORIGIN),
         Core::Column(column) => column.corners().get(n).copied(),
+        Core::Block(block) => block.corners().get(n).copied(),
         Core::Cylinder { .. }
         | Core::Cone { .. }
         | Core::Ellipsoid { .. }
@@ -220,7 +235,8 @@ pub(super) fn corner(core: &Core, number: u32) -> Option<Vec3> {
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => None,
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => None,
     }
 }
 
@@ -230,6 +246,7 @@ pub(super) fn center(core: &Core) -> Vec3 {
         Core::Convex(hull) => hull.bounds().center(),
         Core::Triangle([a, b, c]) => (a + b + c) / 3.0,
         Core::Segment([a, b]) => (a + b) / 2.0,
+        Core::Block(block) => block.center(),
         Core::Column(Column { top: [a, b, c], floor }) => {
             let [x, y, z] = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0);
             Vec3::new(x, y, (z + floor) / 2.0)
@@ -245,7 +262,8 @@ pub(super) fn center(core: &Core) -> Vec3 {
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => ORIGIN,
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => ORIGIN,
     }
 }
 

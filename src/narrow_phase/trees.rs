@@ -1,4 +1,4 @@
-//! What a walk goes down: the tree of a mesh, of a point cloud, of terrain, or a convex piece that is a leaf of its own.
+//! What a walk goes down: the tree of a mesh, of a point cloud, of terrain, of voxels, or a convex piece that is a leaf of its own.
 //!
 //! All are seen as binary trees of boxes in the piece's frame. Those of meshes are boxes in memory, side by side; the others make
 //! theirs when they are asked. A walk is compiled for two sides that are meshes or convex ([`Branches`]), and for two of any kind ([`Growth`]).
@@ -7,9 +7,10 @@ use std::borrow::Borrow;
 
 use super::pieces::Piece;
 use super::support::support;
+use crate::geometry::vector::ORIGIN;
 use crate::geometry::{
-    Aabb, Content, Core, HeightField, MeshTree, NodeId, Nodes, OrientedBox, Patch, PointCloud, Run, Siblings,
-    TriangleMesh, TwinBox, Vec3,
+    Aabb, Cells, Content, Core, HeightField, MeshTree, NodeId, Nodes, OrientedBox, Patch, PointCloud, Run, Siblings,
+    TriangleMesh, TwinBox, Vec3, Voxels,
 };
 
 /// A binary tree of boxes with convex things in its leaves.
@@ -44,8 +45,9 @@ pub(super) enum Inside<N, L> {
 }
 
 /// Levels of any of the trees at most: a mesh has less than 2^31 triangles and a cloud no more than 2^31 points, all cut in halves;
-/// terrain has as many cells at most, cut along rows and along columns, and those in two.
-pub(super) const MOST_LEVELS: usize = 36;
+/// terrain has as many cells at most, cut along rows and along columns, and those in two; a map has 21 levels of octants, cut three times
+/// each, and bricks of 64 cells.
+pub(super) const MOST_LEVELS: usize = 72;
 
 const _: () = assert!(MOST_LEVELS >= crate::geometry::MOST_LEVELS);
 
@@ -66,7 +68,7 @@ impl<'a> Branches<'a> {
     pub fn of(piece: &Piece<'a>, alone: &'a Siblings) -> Option<Self> {
         match piece.shape.core() {
             Core::Mesh(mesh) => Some(Self::of_mesh(mesh)),
-            Core::HeightField(_) | Core::PointCloud(_) => None,
+            Core::HeightField(_) | Core::PointCloud(_) | Core::Voxels(_) => None,
             Core::Point
             | Core::Cuboid { .. }
             | Core::AxialSegment { .. }
@@ -79,7 +81,8 @@ impl<'a> Branches<'a> {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Compound(_)
-            | Core::Column(_) => Some(Self { nodes: Nodes::alone(alone), mesh: None }),
+            | Core::Column(_)
+            | Core::Block(_) => Some(Self { nodes: Nodes::alone(alone), mesh: None }),
         }
     }
 }
@@ -142,14 +145,17 @@ pub(super) enum Growth<'a> {
     Branches(Branches<'a>),
     Cloud(&'a PointCloud),
     Field(&'a HeightField),
+    /// A map and all its cells.
+    Map(&'a Voxels, Cells<'a>),
 }
 
 /// A node of a tree of any kind: of the one it came from.
 #[derive(Clone, Copy)]
-pub(super) enum AnyNode {
+pub(super) enum AnyNode<'a> {
     Branch(NodeId),
     Run(Run),
     Patch(Patch),
+    Cells(Cells<'a>),
 }
 
 /// A leaf of a tree of any kind: of the one it came from.
@@ -160,13 +166,17 @@ pub(super) enum AnyLeaf {
     Point(u32),
     /// The number of a column.
     Column(u32),
+    /// A cell and its number.
+    Cell([i32; 3], u32),
 }
 
 impl<'a> Growth<'a> {
     /// `alone`: the piece's bounds.
-    pub fn of(piece: &Piece<'a>, alone: &'a Siblings) -> Self {
-        match piece.shape.core() {
+    /// None for a map without cells.
+    pub fn of(piece: &Piece<'a>, alone: &'a Siblings) -> Option<Self> {
+        Some(match piece.shape.core() {
             Core::PointCloud(cloud) => Self::Cloud(cloud),
+            Core::Voxels(map) => Self::Map(map, map.root()?),
             Core::HeightField(field) => Self::Field(field),
             Core::Mesh(mesh) => Self::Branches(Branches::of_mesh(mesh)),
             Core::Point
@@ -181,14 +191,16 @@ impl<'a> Growth<'a> {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Compound(_)
-            | Core::Column(_) => Self::Branches(Branches { nodes: Nodes::alone(alone), mesh: None }),
-        }
+            | Core::Column(_)
+            | Core::Block(_) => Self::Branches(Branches { nodes: Nodes::alone(alone), mesh: None }),
+        })
     }
 
     /// The tree of a core that is made of many; none of one that is a leaf of its own.
     pub fn of_core(core: &'a Core) -> Option<Self> {
         match core {
             Core::PointCloud(cloud) => Some(Self::Cloud(cloud)),
+            Core::Voxels(map) => Some(Self::Map(map, map.root()?)),
             Core::HeightField(field) => Some(Self::Field(field)),
             Core::Mesh(mesh) => Some(Self::Branches(Branches::of_mesh(mesh))),
             Core::Point
@@ -203,16 +215,18 @@ impl<'a> Growth<'a> {
             | Core::HalfSpace { .. }
             | Core::Plane { .. }
             | Core::Compound(_)
-            | Core::Column(_) => None,
+            | Core::Column(_)
+            | Core::Block(_) => None,
         }
     }
 
-    /// The box of a node of a cloud or field along the axes.
-    fn upright(&self, node: AnyNode) -> Aabb {
+    /// The box of a node of a cloud, field or map along the axes.
+    fn upright(&self, node: AnyNode<'a>) -> Aabb {
         match (self, node) {
             (Self::Cloud(cloud), AnyNode::Run(run)) => cloud.bounds_of(run),
             (Self::Field(field), AnyNode::Patch(patch)) => field.bounds_of(patch),
-            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_), _) => unreachable!("{ANOTHERS}"),
+            (Self::Map(map, _), AnyNode::Cells(cells)) => map.bounds_of(cells),
+            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }
 }
@@ -220,33 +234,34 @@ impl<'a> Growth<'a> {
 const ANOTHERS: &str = "a node or leaf of another kind of tree";
 
 impl<'a> Tree<'a> for Growth<'a> {
-    type Node = AnyNode;
+    type Node = AnyNode<'a>;
     type Leaf = AnyLeaf;
     type Boxes = TwinBox;
 
-    fn root(&self) -> AnyNode {
+    fn root(&self) -> AnyNode<'a> {
         match self {
             Self::Branches(tree) => AnyNode::Branch(tree.root()),
             Self::Cloud(cloud) => AnyNode::Run(cloud.root()),
             Self::Field(field) => AnyNode::Patch(field.root()),
+            Self::Map(_, cells) => AnyNode::Cells(*cells),
         }
     }
 
-    fn bounds(&self, node: AnyNode) -> OrientedBox {
+    fn bounds(&self, node: AnyNode<'a>) -> OrientedBox {
         if let (Self::Branches(tree), AnyNode::Branch(node)) = (self, node) {
             return tree.bounds(node);
         }
         OrientedBox::upright(&self.upright(node))
     }
 
-    fn size(&self, node: AnyNode) -> f64 {
+    fn size(&self, node: AnyNode<'a>) -> f64 {
         if let (Self::Branches(tree), AnyNode::Branch(node)) = (self, node) {
             return tree.size(node);
         }
         self.upright(node).half_extents().max()
     }
 
-    fn both(&self, children: [AnyNode; 2]) -> TwinBox {
+    fn both(&self, children: [AnyNode<'a>; 2]) -> TwinBox {
         if let (Self::Branches(tree), [AnyNode::Branch(one), AnyNode::Branch(other)]) = (self, children) {
             return *tree.both([one, other]);
         }
@@ -259,7 +274,7 @@ impl<'a> Tree<'a> for Growth<'a> {
         TwinBox::new([&root, &root])
     }
 
-    fn inside(&self, node: AnyNode) -> Inside<AnyNode, AnyLeaf> {
+    fn inside(&self, node: AnyNode<'a>) -> Inside<AnyNode<'a>, AnyLeaf> {
         match (self, node) {
             (Self::Branches(tree), AnyNode::Branch(node)) => match tree.inside(node) {
                 Inside::Children(children) => Inside::Children(children.map(AnyNode::Branch)),
@@ -273,7 +288,11 @@ impl<'a> Tree<'a> for Growth<'a> {
                 (Some(halves), _) => Inside::Children(halves.map(AnyNode::Patch)),
                 (None, number) => Inside::Leaf(AnyLeaf::Column(number.unwrap_or_default())),
             },
-            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_), _) => unreachable!("{ANOTHERS}"),
+            (Self::Map(..), AnyNode::Cells(cells)) => match (cells.halves(), cells.first()) {
+                (Some(halves), _) => Inside::Children(halves.map(AnyNode::Cells)),
+                (None, (cell, number)) => Inside::Leaf(AnyLeaf::Cell(cell, number)),
+            },
+            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }
 
@@ -281,15 +300,15 @@ impl<'a> Tree<'a> for Growth<'a> {
         match (self, leaf) {
             (Self::Branches(tree), AnyLeaf::Branch(leaf)) => tree.number(leaf),
             (Self::Cloud(cloud), AnyLeaf::Point(place)) => Some(cloud.number(place)),
-            (Self::Field(_), AnyLeaf::Column(number)) => Some(number),
-            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_), _) => unreachable!("{ANOTHERS}"),
+            (Self::Field(_), AnyLeaf::Column(number)) | (Self::Map(..), AnyLeaf::Cell(_, number)) => Some(number),
+            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }
 
     fn triangle(&self, leaf: AnyLeaf) -> Option<&'a [Vec3; 3]> {
         match (self, leaf) {
             (Self::Branches(tree), AnyLeaf::Branch(leaf)) => tree.triangle(leaf),
-            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_), _) => None,
+            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => None,
         }
     }
 
@@ -298,9 +317,28 @@ impl<'a> Tree<'a> for Growth<'a> {
             (Self::Branches(tree), AnyLeaf::Branch(leaf)) => tree.core(leaf),
             (Self::Cloud(cloud), AnyLeaf::Point(place)) => Some(Core::Segment([cloud.at(place); 2])),
             (Self::Field(field), AnyLeaf::Column(number)) => Some(Core::Column(field.column(number))),
-            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_), _) => unreachable!("{ANOTHERS}"),
+            (Self::Map(map, _), AnyLeaf::Cell(cell, _)) => Some(Core::Block(map.box_of(cell))),
+            (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }
+}
+
+impl<'a> Growth<'a> {
+    /// A point of what is in a node, in the piece's frame.
+    pub fn any_point_in(&self, node: AnyNode<'a>) -> Vec3 {
+        let mut node = node;
+        loop {
+            match self.inside(node) {
+                Inside::Children([first, _]) => node = first,
+                Inside::Leaf(leaf) => return self.core(leaf).and_then(|core| any_point(&core)).unwrap_or(ORIGIN),
+            }
+        }
+    }
+}
+
+/// Whether a core's pieces need not hang together: clouds and voxels. Meshes know their parts by themselves.
+pub(super) fn has_loose_parts(core: &Core) -> bool {
+    matches!(core, Core::PointCloud(_) | Core::Voxels(_))
 }
 
 /// Whether a piece has to be walked down, as it is made of many convex ones.
@@ -311,7 +349,7 @@ pub(super) fn has_tree(piece: &Piece) -> bool {
 /// Whether a core is made of many convex ones, with a tree over them.
 pub(super) fn is_tree(core: &Core) -> bool {
     match core {
-        Core::Mesh(_) | Core::HeightField(_) | Core::PointCloud(_) => true,
+        Core::Mesh(_) | Core::HeightField(_) | Core::PointCloud(_) | Core::Voxels(_) => true,
         Core::Point
         | Core::Cuboid { .. }
         | Core::AxialSegment { .. }
@@ -324,17 +362,19 @@ pub(super) fn is_tree(core: &Core) -> bool {
         | Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Compound(_)
-        | Core::Column(_) => false,
+        | Core::Column(_)
+        | Core::Block(_) => false,
     }
 }
 
-/// A point of the part of a shape with the number 0, in its frame; none of what has no bounds or is a compound.
+/// A point of the part of a shape with the number 0, in its frame; none of what has no bounds, is empty or a compound.
 pub(super) fn any_point(core: &Core) -> Option<Vec3> {
     match core {
         // A vertex may belong to no triangle.
         Core::Mesh(mesh) => Some(mesh.triangle(0)[0]),
         Core::PointCloud(cloud) => Some(cloud.first()),
         Core::HeightField(field) => Some(field.column(0).top[0]),
+        Core::Voxels(map) => map.root().map(|cells| map.box_of(cells.first().0).min),
         Core::Point
         | Core::Cuboid { .. }
         | Core::AxialSegment { .. }
@@ -344,7 +384,8 @@ pub(super) fn any_point(core: &Core) -> Option<Vec3> {
         | Core::Convex(_)
         | Core::Triangle(_)
         | Core::Segment(_)
-        | Core::Column(_) => Some(support(core, Vec3::z())),
+        | Core::Column(_)
+        | Core::Block(_) => Some(support(core, Vec3::z())),
         Core::HalfSpace { .. } | Core::Plane { .. } | Core::Compound(_) => None,
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn walk(a: &Piece, b: &Piece, goal: &Goal) -> Option<Separation> {
             if let (Some(tree_a), Some(tree_b)) = (Branches::of(a, &alone_a), Branches::of(b, &alone_b)) {
                 return along(Side { piece: a, tree: tree_a }, Side { piece: b, tree: tree_b }, goal);
             }
-            let (tree_a, tree_b) = (Growth::of(a, &alone_a), Growth::of(b, &alone_b));
+            let (tree_a, tree_b) = (Growth::of(a, &alone_a)?, Growth::of(b, &alone_b)?);
             along(Side { piece: a, tree: tree_a }, Side { piece: b, tree: tree_b }, goal)
         }
     }

@@ -21,7 +21,7 @@ pub(super) fn walk(a: &Piece, wall: Unbounded, goal: &Goal) -> Option<Separation
     let alone = Siblings::alone(&OrientedBox::upright(&a.shape.core().bounds()?));
     match Branches::of(a, &alone) {
         Some(tree) => along(Side { piece: a, tree }, wall, goal),
-        None => along(Side { piece: a, tree: Growth::of(a, &alone) }, wall, goal),
+        None => along(Side { piece: a, tree: Growth::of(a, &alone)? }, wall, goal),
     }
 }
 

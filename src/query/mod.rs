@@ -10,6 +10,7 @@ mod contact_tracker;
 mod contacts;
 mod context;
 mod item_batch;
+mod mesh_card;
 mod met;
 mod motion_course;
 mod motion_measure;
@@ -38,6 +39,7 @@ pub use contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
 };
 pub use item_batch::ItemBatch;
+pub use mesh_card::MeshCard;
 pub use nearest_bodies::Neighbours;
 pub use overlap::Overlaps;
 pub use rays::Rays;

@@ -267,8 +267,8 @@ impl Nearest {
                 self.collides |= bracket.upper <= 0.0;
                 self.within |= bracket.lower > 0.0 && bracket.upper <= margin;
             }
-            // A pair of two unbounded shapes has no distance; links are bounded, so there is none.
-            Err(NoSeparation::Unbounded { .. }) => {}
+            // Two unbounded shapes have no distance, but links are bounded; and nothing is near a shape without a point.
+            Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }) => {}
             Err(NoSeparation::Unclaimed(pair)) => *unclaimed = Some(pair),
         }
     }

@@ -89,7 +89,7 @@ impl<'a> Neighbours<'a> {
             };
             match separation(asker.shape, &body.shape, &asker.at, &body.placement, &goal) {
                 Ok(separation) => found.take(&self.pair(&separation, asker, body, margin), separation.cost),
-                Err(NoSeparation::Unbounded { .. }) => {}
+                Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }) => {}
                 Err(NoSeparation::Unclaimed(unclaimed)) => {
                     problem = problem.take().or(Some(format!("context.solver: {unclaimed}")));
                 }

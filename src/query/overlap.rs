@@ -62,7 +62,7 @@ impl<'a> Overlaps<'a> {
                         answer.cost += found.cost;
                         Verdict::of(&found.bracket, margin, found.termination)
                     }
-                    Err(NoSeparation::Unbounded { .. }) => continue,
+                    Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }) => continue,
                     Err(NoSeparation::Unclaimed(unclaimed)) => return Err(format!("context.solver: {unclaimed}")),
                 }
             };

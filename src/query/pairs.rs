@@ -86,7 +86,9 @@ impl<'a> Pairs<'a> {
                 }
             },
             Subject::Shape { shape, pose } => {
-                if let (None, Some(id)) = (shape.bounds(), self.first_unbounded()) {
+                if let (None, Some(id)) = (shape.bounds(), self.first_unbounded())
+                    && !shape.is_empty()
+                {
                     let kind = shape.kind();
                     return ItemAnswer::invalid(format!(
                         "items[{item}].shape: a {kind} is unbounded, and so is body {id}: they have no signed distance"
@@ -174,6 +176,7 @@ impl<'a> Pairs<'a> {
                 snapshot.unbounded().iter().for_each(|id| offer(search, *id));
             }
             // A half-space has no box: every bounded body is looked at, by one support value each.
+            None if one.shape.is_empty() => {}
             None => {
                 snapshot.bodies().filter(|b| b.bounds.is_some()).for_each(|b| offer(search, b.id));
             }

@@ -142,8 +142,8 @@ impl<'a> Search<'a> {
         };
         match separation(a.shape, b.shape, a.at, b.at, &goal) {
             Ok(found) => self.take(&found, a, b, margin),
-            // A pair of two unbounded shapes has no distance, and is left out.
-            Err(NoSeparation::Unbounded { .. }) => (),
+            // A pair of two unbounded shapes has no distance, nor has one with nothing in it, and is left out.
+            Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }) => (),
             Err(NoSeparation::Unclaimed(unclaimed)) => self.unclaimed = Some(unclaimed),
         }
     }

@@ -7,7 +7,7 @@ use super::RobotError;
 use super::options::{LinkOptions, MeshUse, ModelOptions};
 use super::urdf::{Geometry, Urdf, collision_item};
 use crate::geometry::mesh_file::{self, MeshFormat, MeshSoup};
-use crate::geometry::{Ball, InvalidShape, Pose, Shape, TriangleMesh, Vec3};
+use crate::geometry::{Ball, InvalidShape, Pose, Shape, TriangleMesh, Vec3, decomposed};
 
 /// A rigid part of a robot.
 #[derive(Clone, Debug)]
@@ -143,6 +143,10 @@ fn from_soup(soup: &MeshSoup, axis_scale: Vec3, mesh: MeshUse) -> Result<Shape, 
         MeshUse::Hull => {
             let scaled: Vec<Vec3> = soup.vertices.iter().map(|v| v.component_mul(&axis_scale)).collect();
             return Shape::convex(&scaled);
+        }
+        MeshUse::Decompose => {
+            let scaled: Vec<Vec3> = soup.vertices.iter().map(|v| v.component_mul(&axis_scale)).collect();
+            return Ok(Shape::compound(Arc::new(decomposed(&scaled, &soup.triangles)?)));
         }
         MeshUse::Exact => TriangleMesh::surface(soup.vertices.clone(), soup.triangles.clone())?,
         MeshUse::Solid => TriangleMesh::solid(soup.vertices.clone(), soup.triangles.clone())?,

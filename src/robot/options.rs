@@ -12,6 +12,8 @@ pub enum MeshUse {
     Solid,
     /// The convex hull of its vertices.
     Hull,
+    /// A few convex hulls that together are nearly the mesh.
+    Decompose,
 }
 
 /// Choices for a link. Scale comes first, then padding.

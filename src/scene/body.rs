@@ -24,7 +24,7 @@ pub struct Body {
     pub pose: Pose,
     /// The same with the rotation written out.
     pub placement: Placement,
-    /// A box in the world that surely holds the body, metres; none when the shape is unbounded.
+    /// A box in the world that surely holds the body, metres; none when the shape is unbounded, or voxels without a cell.
     pub bounds: Option<Aabb>,
     /// The groups it is in, sorted.
     pub groups: Arc<[Arc<str>]>,
@@ -51,6 +51,11 @@ impl Body {
     #[must_use]
     pub fn meets(&self, layers: u32, mask: u32) -> bool {
         self.enabled && self.layers & mask != 0 && layers & self.mask != 0
+    }
+
+    /// Whether it takes part and has no end: then it is looked at by every question.
+    pub(super) fn is_unbounded(&self) -> bool {
+        self.enabled && self.bounds.is_none() && !self.shape.is_empty()
     }
 
     /// Whether it is in the group.

@@ -6,7 +6,7 @@ use super::change::Fault;
 use super::edit::{BodyRef, NewBody};
 use super::party::PartyKey;
 use super::{Body, BodyId, ChangeKinds, Reason, Snapshot};
-use crate::geometry::{Pose, Shape};
+use crate::geometry::{Aabb, Core, Pose, Shape, Vec3, Voxels};
 use crate::limits::{LimitExceeded, Limits};
 
 impl Snapshot {
@@ -81,6 +81,29 @@ impl Snapshot {
         Ok(())
     }
 
+    pub(super) fn insert_points(&mut self, body: &BodyRef, points: &[Vec3], limits: &Limits) -> Result<(), Fault> {
+        let body = self.find(body, "body")?;
+        let map = voxels_of(&body)?.with_points(points).map_err(|invalid| Reason::Shape(invalid).of("points"))?;
+        LimitExceeded::check("max_voxel_cells", map.len(), limits.max_voxel_cells)
+            .map_err(|limit| Reason::Limit(limit).of("points"))?;
+        self.put_voxels(&body, map)
+    }
+
+    pub(super) fn clear_box(&mut self, body: &BodyRef, bounds: &Aabb) -> Result<(), Fault> {
+        let body = self.find(body, "body")?;
+        let map = voxels_of(&body)?.without_box(bounds).map_err(|invalid| Reason::Shape(invalid).of("box"))?;
+        self.put_voxels(&body, map)
+    }
+
+    /// Another map in the place of a body's. Scale and padding are in the shape already.
+    fn put_voxels(&mut self, body: &Body, map: Voxels) -> Result<(), Fault> {
+        let kind = body.shape.kind();
+        let shape = body.shape.with_voxels(map).ok_or_else(|| Reason::NotVoxels { kind }.of("body"))?;
+        let bounds = shape.placed_bounds(&body.placement);
+        self.put(Body { shape: Arc::new(shape), bounds, ..Body::clone(body) });
+        Ok(())
+    }
+
     pub(super) fn set_groups(&mut self, body: &BodyRef, groups: &[String], limits: &Limits) -> Result<(), Fault> {
         let body = self.find(body, "body")?;
         let (groups, group_keys) = self.join_groups(groups, limits)?;
@@ -151,7 +174,7 @@ impl Snapshot {
                 body.proxy = None;
             }
         }
-        if body.enabled && body.bounds.is_none() {
+        if body.is_unbounded() {
             let unbounded = Arc::make_mut(&mut self.unbounded);
             if let Err(place) = unbounded.binary_search(&body.id) {
                 unbounded.insert(place, body.id);
@@ -189,6 +212,29 @@ impl Snapshot {
 
     fn leave_groups(&mut self, body: &Body) {
         body.group_keys.iter().for_each(|key| self.groups.drop_use(*key));
+    }
+}
+
+fn voxels_of(body: &Body) -> Result<&Voxels, Fault> {
+    match body.shape.core() {
+        Core::Voxels(map) => Ok(map),
+        Core::Point
+        | Core::Cuboid { .. }
+        | Core::AxialSegment { .. }
+        | Core::Cylinder { .. }
+        | Core::Cone { .. }
+        | Core::Ellipsoid { .. }
+        | Core::Convex(_)
+        | Core::Triangle(_)
+        | Core::Segment(_)
+        | Core::HalfSpace { .. }
+        | Core::Plane { .. }
+        | Core::Mesh(_)
+        | Core::Compound(_)
+        | Core::HeightField(_)
+        | Core::PointCloud(_)
+        | Core::Column(_)
+        | Core::Block(_) => Err(Reason::NotVoxels { kind: body.shape.kind() }.of("body")),
     }
 }
 

@@ -28,6 +28,8 @@ impl Snapshot {
             Edit::RemoveBody { body } => self.remove_body(body)?,
             Edit::MoveBody { body, pose } => self.move_body(body, pose)?,
             Edit::ReplaceShape { body, shape, scale, padding } => self.replace_shape(body, shape, *scale, *padding)?,
+            Edit::InsertPoints { body, points } => self.insert_points(body, points, limits)?,
+            Edit::ClearBox { body, bounds } => self.clear_box(body, bounds)?,
             Edit::SetGroups { body, groups } => self.set_groups(body, groups, limits)?,
             Edit::SetLayers { body, layers, mask } => self.set_layers(body, *layers, *mask)?,
             Edit::SetEnabled { body, enabled } => self.set_enabled(body, *enabled)?,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{BodyId, Party};
-use crate::geometry::{Pose, Shape};
+use crate::geometry::{Aabb, Pose, Shape, Vec3};
 use crate::robot::RobotModel;
 
 /// One change. The edits of a list are made in order, and each sees what the earlier ones did.
@@ -33,6 +33,20 @@ pub enum Edit {
         scale: f64,
         /// Added to the swept radius after scaling; metres, not negative.
         padding: f64,
+    },
+    /// A body whose shape is voxels gets the cells of these points too.
+    InsertPoints {
+        /// Which.
+        body: BodyRef,
+        /// Metres, in the body's frame.
+        points: Arc<[Vec3]>,
+    },
+    /// A body whose shape is voxels loses the cells that points of a box belong to.
+    ClearBox {
+        /// Which.
+        body: BodyRef,
+        /// Closed, in the body's frame, metres.
+        bounds: Aabb,
     },
     /// A body is in these groups from now on, and in no others.
     SetGroups {

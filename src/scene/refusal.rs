@@ -98,7 +98,13 @@ pub enum Reason {
         /// As it was given.
         value: f64,
     },
-    /// The shape cannot be scaled or padded so.
+    /// Points are inserted into voxels and boxes cleared of them, and the body is something else.
+    #[error("the body's shape is a {kind}, and only voxels can be edited")]
+    NotVoxels {
+        /// What the shape is.
+        kind: &'static str,
+    },
+    /// The shape cannot be scaled, padded or edited so.
     #[error(transparent)]
     Shape(#[from] InvalidShape),
     /// A cap of the scene.

@@ -8,6 +8,7 @@ mod memory;
 mod model;
 mod random_edits;
 mod refusals;
+mod voxels;
 
 use std::sync::Arc;
 

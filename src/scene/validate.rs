@@ -49,7 +49,7 @@ impl Snapshot {
         check(self.names.size() == self.bodies.len(), "there are names of no body")?;
         let listed = self.bodies().filter(|body| body.proxy.is_some()).count();
         check(listed == self.broad_phase.len(), "the broad phase has entries of no body")?;
-        let unbounded = self.bodies().filter(|body| body.enabled && body.bounds.is_none()).map(|body| body.id);
+        let unbounded = self.bodies().filter(|body| body.is_unbounded()).map(|body| body.id);
         check(unbounded.eq(self.unbounded.iter().copied()), "the list of bodies without bounds is not right")?;
         self.check_robots()?;
         self.check_entries()?;

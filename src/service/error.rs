@@ -130,6 +130,7 @@ impl From<Refusal> for ServiceError {
             | Reason::NotPositive { .. }
             | Reason::Shape(_) => Self::Invalid { field, problem },
             Reason::NameTaken { .. }
+            | Reason::NotVoxels { .. }
             | Reason::UnknownId { .. }
             | Reason::BodyRemoved { .. }
             | Reason::UnknownBody { .. }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use super::admission::Admission;
 use super::assets::{Assets, ContentHash};
 use crate::geometry::mesh_file::{self, MeshFileError, MeshFormat};
-use crate::geometry::{ConvexHull, InvalidShape, Shape, TriangleMesh, Vec3};
+use crate::geometry::{Compound, ConvexHull, InvalidShape, Shape, TriangleMesh, Vec3, decomposed};
 use crate::limits::{LimitExceeded, Limits};
 use crate::robot::MeshUse;
 
@@ -55,6 +55,7 @@ type MeshKey = (ContentHash, u8, MeshUse, [u64; 3]);
 enum SharedMesh {
     Hull(Weak<ConvexHull>),
     Mesh(Weak<TriangleMesh>),
+    Pieces(Weak<Compound>),
 }
 
 impl SharedMesh {
@@ -62,6 +63,7 @@ impl SharedMesh {
         match self {
             Self::Hull(hull) => hull.upgrade().map(Shape::hull),
             Self::Mesh(mesh) => mesh.upgrade().map(Shape::mesh),
+            Self::Pieces(pieces) => pieces.upgrade().map(Shape::compound),
         }
     }
 
@@ -69,6 +71,7 @@ impl SharedMesh {
         match self {
             Self::Hull(hull) => hull.strong_count() > 0,
             Self::Mesh(mesh) => mesh.strong_count() > 0,
+            Self::Pieces(pieces) => pieces.strong_count() > 0,
         }
     }
 }
@@ -112,10 +115,17 @@ impl Library {
                 let hull = Arc::new(ConvexHull::new(&points)?);
                 (Shape::hull(Arc::clone(&hull)), SharedMesh::Hull(Arc::downgrade(&hull)))
             }
+            MeshUse::Decompose => {
+                let vertices: Vec<Vec3> = soup.vertices.iter().map(|v| v.component_mul(&scale)).collect();
+                let pieces = Arc::new(decomposed(&vertices, &soup.triangles)?);
+                (Shape::compound(Arc::clone(&pieces)), SharedMesh::Pieces(Arc::downgrade(&pieces)))
+            }
             MeshUse::Exact | MeshUse::Solid => {
                 let mesh = match mode {
                     MeshUse::Solid => TriangleMesh::solid(soup.vertices, soup.triangles)?,
-                    MeshUse::Exact | MeshUse::Hull => TriangleMesh::surface(soup.vertices, soup.triangles)?,
+                    MeshUse::Exact | MeshUse::Hull | MeshUse::Decompose => {
+                        TriangleMesh::surface(soup.vertices, soup.triangles)?
+                    }
                 };
                 let mesh = Arc::new(if scale == Vec3::repeat(1.0) { mesh } else { mesh.scaled(scale)? });
                 (Shape::mesh(Arc::clone(&mesh)), SharedMesh::Mesh(Arc::downgrade(&mesh)))

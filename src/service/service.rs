@@ -11,7 +11,8 @@ use super::admission::Admission;
 use super::assets::{ContentHash, Stored, Upload};
 use super::contact_watch::ContactWatch;
 use super::deadline::{Deadline, Patience, Stop};
-use super::library::Library;
+use super::library::{Library, UnusableMesh};
+use super::mesh_cards::{MeshCardRequest, TimedMeshCard};
 use super::revision_rule::RevisionRule;
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
@@ -248,6 +249,27 @@ impl Service {
         prepare(move || {
             let _permit = permit;
             robots.load(&description()?, library.assets())
+        })
+        .await
+    }
+
+    /// Measures what a mesh costs as convex pieces. When time runs out the brackets are as narrow as they were then.
+    ///
+    /// # Errors
+    /// What `request` says, a cap; `unusable` tells what is wrong with the mesh.
+    pub async fn mesh_card(
+        &self,
+        request: MeshCardRequest,
+        patience: Patience,
+        unusable: impl FnOnce(UnusableMesh) -> ServiceError + Send + 'static,
+    ) -> Result<TimedMeshCard, ServiceError> {
+        self.check_open()?;
+        let permit = self.loads.enter()?;
+        let library = Arc::clone(&self.library);
+        let (stop, _waiting) = Stop::at(self.deadline(patience)?);
+        prepare(move || {
+            let _permit = permit;
+            library.mesh_card(&request, &|| stop.now()).map_err(unusable)
         })
         .await
     }

@@ -6,6 +6,7 @@ mod caches;
 mod closed_forms;
 mod early_outs;
 mod extremes;
+mod fits;
 mod hard_cases;
 mod impacts;
 mod known_failures;

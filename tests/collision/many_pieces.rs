@@ -1,15 +1,16 @@
-//! Terrain and point clouds against every kind of shape, held against all pairs of their pieces one by one.
+//! Terrain, point clouds and voxels against every kind of shape, held against all pairs of their pieces one by one.
 //!
 //! Oracle: `separation` of single convex pieces, which knows neither trees nor pyramids: a column of terrain as the convex hull of
-//! its six corners, a point of a cloud as a segment without length, swept. The least of all lower bounds and the least of all
+//! its six corners, a point of a cloud as a segment without length, swept; a cell as
+//! the convex hull of its eight corners. The least of all lower bounds and the least of all
 //! upper bounds bracket the truth. Brackets of convex pairs are checked in `soundness`.
 
 use std::sync::Arc;
 
 use clearance::geometry::{
-    Compound, Grid, HeightField, Part, Placement, PointCloud, Pose, Quaternion, Shape, TriangleMesh, Vec3,
+    Aabb, Compound, Grid, HeightField, Part, Placement, PointCloud, Pose, Quaternion, Shape, TriangleMesh, Vec3, Voxels,
 };
-use clearance::narrow_phase::{Accuracy, Bracket, Depth, Goal, Separation, separation};
+use clearance::narrow_phase::{Accuracy, Bracket, Depth, Goal, NoSeparation, Separation, separation};
 
 use crate::samples::{Random, at, convex_shapes};
 
@@ -39,7 +40,7 @@ fn terrain(rows: u32, columns: u32, random: &mut Random) -> Specimen {
         let (y, x) = (f64::from(i / columns) * spacing[1], f64::from(i % columns) * spacing[0]);
         let sum: f64 = waves.iter().map(|(u, v)| libm::sin(2.0 * u * x + 2.0 * v * y)).sum();
         // A flat that lies on the floor is a field too.
-        (0.15 * sum).max(-0.5 + if i % 11 == 0 { 0.0 } else { 0.2 })
+        (0.15 * sum).max(-0.5 + if i.is_multiple_of(11) { 0.0 } else { 0.2 })
     };
     let heights: Vec<f64> = (0..rows * columns).map(height).collect();
     let point =
@@ -69,6 +70,16 @@ fn cloud(count: usize, radius: f64, random: &mut Random) -> Specimen {
     }
     let whole = Shape::point_cloud(Arc::new(PointCloud::new(&points).unwrap()), radius).unwrap();
     Specimen::of(whole, points.iter().map(|p| Shape::segment(*p, *p).unwrap().swept(radius).unwrap()))
+}
+
+/// Cells along a crooked line and in a block, at a resolution that is no sum of powers of two.
+fn voxels(random: &mut Random) -> Specimen {
+    let mut map = Voxels::new(0.15).unwrap();
+    let line: Vec<Vec3> = (0..30).map(|i| Vec3::repeat(f64::from(i) * 0.04 - 0.6) + random.vector(0.1)).collect();
+    let block: Vec<[i32; 3]> = (0..27).map(|i| [i % 3 - 6, i / 3 % 3 - 1, i / 9]).collect();
+    map = map.with_points(&line).unwrap().with_cells(&block).unwrap();
+    let cell = |cell: [i32; 3]| Shape::convex(&map.box_of(cell).corners()).unwrap();
+    Specimen::of(Shape::voxels(map.clone()), map.cells().into_iter().map(cell))
 }
 
 /// A crumpled sheet.
@@ -182,14 +193,15 @@ fn at_three_gaps(a: &Specimen, b: &Specimen, random: &mut Random, seen: &mut Reg
 }
 
 #[test]
-fn terrain_and_clouds_are_as_far_from_every_kind_of_shape_as_their_nearest_pieces() {
+fn terrain_clouds_and_voxels_are_as_far_from_every_kind_of_shape_as_their_nearest_pieces() {
     let mut random = Random::new(41);
     let mut seen = Regimes::default();
     let pose =
         |x: f64, y: f64| Pose::new(Vec3::new(x, y, 0.1), Quaternion { w: 0.9, x: 0.1, y: -0.3, z: 0.2 }).unwrap();
     let ball = Shape::sphere(0.3).unwrap();
-    for specimen in [terrain(5, 6, &mut random), cloud(30, 0.04, &mut random), cloud(25, 0.0, &mut random).swept(0.02)]
-    {
+    let clouds = [cloud(30, 0.04, &mut random), cloud(25, 0.0, &mut random).swept(0.02)];
+    let maps = [voxels(&mut random), voxels(&mut random).swept(0.05)];
+    for specimen in [terrain(5, 6, &mut random)].into_iter().chain(clouds).chain(maps) {
         let mut others: Vec<Specimen> =
             convex_shapes().into_iter().map(|shape| Specimen::of(shape.clone(), [shape])).collect();
         for wall in [Shape::half_space(Vec3::new(0.3, -0.2, 2.0), 0.4), Shape::plane(Vec3::new(0.1, 1.0, 0.3), -0.2)] {
@@ -200,6 +212,7 @@ fn terrain_and_clouds_are_as_far_from_every_kind_of_shape_as_their_nearest_piece
         others.push(compound(vec![(ball.clone(), pose(0.4, 0.0)), (convex_shapes().remove(2), pose(-0.3, 0.2))]));
         others.push(terrain(4, 5, &mut random));
         others.push(cloud(20, 0.1, &mut random));
+        others.push(voxels(&mut random));
         for other in &others {
             at_three_gaps(&specimen, other, &mut random, &mut seen);
         }
@@ -210,11 +223,13 @@ fn terrain_and_clouds_are_as_far_from_every_kind_of_shape_as_their_nearest_piece
 
 /// Clouds and terrain as parts: the pieces are the parts, each of them a union itself.
 #[test]
-fn a_compound_may_hold_terrain_and_clouds() {
+fn a_compound_may_hold_terrain_clouds_and_voxels() {
     let mut random = Random::new(42);
     let (field, dots) = (terrain(4, 4, &mut random), cloud(20, 0.05, &mut random));
     let pose = Pose::new(Vec3::new(0.5, 0.3, 1.2), Quaternion { w: 1.0, x: 0.2, y: -0.4, z: 0.1 }).unwrap();
-    let both = compound(vec![(field.whole.clone(), Pose::identity()), (dots.whole.clone(), pose)]);
+    let (map, low) = (voxels(&mut random), Pose::new(Vec3::new(0.0, 0.0, -1.5), Quaternion::IDENTITY).unwrap());
+    let parts = vec![(field.whole.clone(), Pose::identity()), (dots.whole.clone(), pose), (map.whole, low)];
+    let both = compound(parts);
     let mut seen = Regimes::default();
     for shape in convex_shapes() {
         at_three_gaps(&both, &Specimen::of(shape.clone(), [shape]), &mut random, &mut seen);
@@ -260,6 +275,12 @@ fn terrain_names_the_column_and_a_cloud_the_point() {
     let cloud = Shape::point_cloud(Arc::new(PointCloud::new(&points).unwrap()), 0.1).unwrap();
     let found = separation(&cloud, &point, &here, &at(17.2, 0.0, 0.0), &Goal::penetration()).unwrap();
     assert!(found.subshape_a == 1 && (found.signed_distance - 0.1).abs() < 1e-12, "{found:?}");
+
+    let map = Voxels::new(0.5).unwrap().with_cells(&[[4, 0, 0], [-3, 0, 0], [0, 0, 0], [1, 0, 0]]).unwrap();
+    let found = separation(&Shape::voxels(map.clone()), &point, &here, &at(1.25, 0.25, 0.25), &Goal::penetration());
+    let found = found.unwrap();
+    assert_eq!(map.cells()[found.subshape_a as usize], [1, 0, 0]);
+    assert!((found.signed_distance - 0.25).abs() < 1e-12, "{found:?}");
 }
 
 #[test]
@@ -284,6 +305,13 @@ fn points_inside_a_solid_mesh_collide_wherever_the_rest_of_the_cloud_is() {
             }
         }
     }
+    // Cells that touch nothing else, and one that holds the whole of a small solid.
+    let lone = |cell: [i32; 3]| Shape::voxels(Voxels::new(0.5).unwrap().with_cells(&[[9, 9, 9], cell]).unwrap());
+    assert!(separation(&cube, &lone([0, 0, 0]), &here, &here, &Goal::verdict()).unwrap().bracket.upper <= 0.0);
+    assert!(separation(&cube, &lone([-9, 0, 0]), &here, &here, &Goal::verdict()).unwrap().bracket.lower > 0.0);
+    let grain = cube.scaled(0.1).unwrap();
+    let found = separation(&grain, &lone([0, 0, 0]), &at(0.25, 0.25, 0.25), &here, &Goal::verdict()).unwrap();
+    assert!(found.bracket.upper <= 0.0, "{found:?}");
     // Terrain is connected: any point of it tells.
     let grid = Grid { rows: 3, columns: 3, spacing: [0.1, 0.1] };
     let small = Shape::height_field(Arc::new(HeightField::new(grid, vec![0.3; 9], 0.0).unwrap()));
@@ -296,7 +324,7 @@ fn scaled_and_swept_terrain_and_clouds_have_the_distances_that_follow() {
     let mut random = Random::new(44);
     let (here, there) = (at(0.0, 0.0, 0.0), at(0.4, 0.5, 2.0));
     let ball = Shape::sphere(0.1).unwrap();
-    for specimen in [terrain(6, 7, &mut random), cloud(40, 0.03, &mut random)] {
+    for specimen in [terrain(6, 7, &mut random), cloud(40, 0.03, &mut random), voxels(&mut random)] {
         let of = |shape: &Shape, ball: &Shape, there: &Placement| {
             separation(shape, ball, &here, there, &Goal::penetration()).unwrap().signed_distance
         };
@@ -308,4 +336,34 @@ fn scaled_and_swept_terrain_and_clouds_have_the_distances_that_follow() {
         let bounds = specimen.whole.bounds().unwrap();
         assert!((twice.bounds().unwrap().max - bounds.max * 2.0).amax() < 1e-12);
     }
+}
+
+#[test]
+fn a_map_without_cells_has_no_distance_and_says_so() {
+    let empty = Shape::voxels(Voxels::new(0.5).unwrap());
+    let (ball, here) = (Shape::sphere(1.0).unwrap(), at(0.0, 0.0, 0.0));
+    assert!(empty.is_empty() && empty.bounds().is_none() && !ball.is_empty());
+    for (a, b) in [(&empty, &ball), (&ball, &empty), (&empty, &empty)] {
+        let refused = separation(a, b, &here, &here, &Goal::verdict()).unwrap_err();
+        assert_eq!(refused, NoSeparation::Empty { a: a.kind(), b: b.kind() });
+    }
+    let refused = Compound::new(vec![Part { shape: empty, pose: Pose::identity() }]).unwrap_err();
+    assert_eq!(refused.to_string(), "parts[0]: voxels is empty");
+}
+
+/// Oracle: the history. A map that was edited is another; the old one answers as before, byte for byte.
+#[test]
+fn an_edited_map_leaves_the_one_it_came_from_as_it_was() {
+    let mut random = Random::new(45);
+    let points: Vec<Vec3> = (0..5000).map(|_| random.direction() * 2.0).collect();
+    let old = Voxels::new(0.1).unwrap().with_points(&points).unwrap();
+    let (ball, here, there) = (Shape::sphere(0.2).unwrap(), at(0.0, 0.0, 0.0), at(0.3, 0.2, 0.1));
+    let ask = |map: &Voxels| separation(&Shape::voxels(map.clone()), &ball, &here, &there, &Goal::penetration());
+    let (before, cells) = (format!("{:?}", ask(&old)), old.cells());
+    let nearer = old.with_points(&[Vec3::new(0.3, 0.2, 0.9)]).unwrap();
+    let hole = Aabb { min: Vec3::new(-2.5, -2.5, 0.0), max: Vec3::repeat(2.5) };
+    let opened = old.without_box(&hole).unwrap();
+    assert!(ask(&nearer).unwrap().signed_distance < 0.7 && opened.len() < old.len());
+    assert!(ask(&opened).unwrap().signed_distance > ask(&nearer).unwrap().signed_distance);
+    assert_eq!((format!("{:?}", ask(&old)), old.cells()), (before, cells));
 }

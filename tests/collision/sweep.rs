@@ -30,7 +30,9 @@ fn least(shape: &Shape, at: &Placement, direction: Vec3) -> f64 {
         | Core::Compound(_)
         | Core::HeightField(_)
         | Core::PointCloud(_)
-        | Core::Column(_) => unreachable!("convex only"),
+        | Core::Voxels(_)
+        | Core::Column(_)
+        | Core::Block(_) => unreachable!("convex only"),
     };
     direction.dot(&at.translation) + core - shape.swept_radius()
 }

@@ -107,6 +107,7 @@ class Scenes(DaemonTest):
             "compound": clearance.compound([(clearance.sphere(0.1), clearance.pose([1, 0, 0]))]),
             "height_field": clearance.height_field([[0, 1], [1, 2]], [0.5, 0.5], -1.0),
             "point_cloud": clearance.point_cloud(corners, 0.1),
+            "voxels": clearance.voxels(0.5, corners, cells=[[-3, 0, 0]]),
         }
         self.scene.apply(*(clearance.add_body(name, shape) for name, shape in shapes.items()))
         self.assertEqual([body.shape_kind for body in self.scene.contents().bodies], list(shapes))
@@ -146,6 +147,32 @@ class Fields(DaemonTest):
             gaps = np.linalg.norm(points - place, axis=1) - 0.01
             self.assertAlmostEqual(answer.nearest.signed_distance, gaps.min(), places=12)
             self.assertEqual(answer.nearest.b.subshape, gaps.argmin())
+
+    def test_a_mapping_loop_inserts_points_and_clears_boxes(self) -> None:
+        self.scene.apply(clearance.add_body("map", clearance.voxels(0.1)))
+        (answer,) = self.scene.distance((clearance.point(), clearance.pose()))
+        self.assertEqual((answer.verdict, answer.nearest), (Verdict.FREE, None))
+        points = np.random.default_rng(7).uniform(0.5, 1.5, (2000, 3)).astype(np.float32)
+        cells = np.unique(np.floor(points.astype(float) / 0.1), axis=0)
+        for edit, kept in [
+            (clearance.insert_points("map", points), cells),
+            (clearance.clear_box("map", [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]), cells[(cells > 10).any(axis=1)]),
+        ]:
+            self.scene.apply(edit)
+            (answer,) = self.scene.distance((clearance.point(), clearance.pose()))
+            expected = np.linalg.norm(kept.clip(min=0.0) * 0.1, axis=1).min()
+            self.assertAlmostEqual(answer.nearest.signed_distance, expected, places=9)
+
+    def test_the_card_of_a_mesh_says_what_its_pieces_cost(self) -> None:
+        cube = "".join(f"v {i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8))
+        quads = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+        cube += "".join(f"f {a + 1} {b + 1} {c + 1}\nf {a + 1} {c + 1} {d + 1}\n" for a, b, c, d in quads)
+        card = self.client.describe_mesh(cube.encode(), "obj", "hull", scale=[2, 2, 2])
+        self.assertEqual((card.pieces, card.closed), (1, True))
+        self.assertLess(max(card.loss.upper, card.inflation.upper), 0.01)
+        card = self.client.describe_mesh(cube.encode(), "obj", accuracy=0.01)
+        self.assertGreaterEqual(card.pieces, 1)
+        self.assertLess(max(card.loss.upper, card.inflation.upper), 0.05)
 
     def test_arrays_of_the_wrong_shape_are_refused_before_they_are_sent(self) -> None:
         for make, field in [

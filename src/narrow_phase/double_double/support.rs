@@ -31,13 +31,15 @@ pub(super) fn support(core: &Core, direction: Vector, scale: f64) -> Vector {
         Core::Convex(hull) => farthest(hull.points(), direction, scale),
         Core::Triangle(corners) => farthest(corners, direction, scale),
         Core::Segment(ends) => farthest(ends, direction, scale),
+        Core::Block(block) => farthest(&block.corners(), direction, scale),
         Core::Column(column) => farthest(&column.corners(), direction, scale),
         Core::HalfSpace { .. }
         | Core::Plane { .. }
         | Core::Mesh(_)
         | Core::Compound(_)
         | Core::HeightField(_)
-        | Core::PointCloud(_) => {
+        | Core::PointCloud(_)
+        | Core::Voxels(_) => {
             unreachable!("only convex, bounded cores have a support function")
         }
     }

@@ -1,5 +1,6 @@
 //! The cores that are hulls of a few points with rational coordinates, as those points.
 
+use arrayvec::ArrayVec;
 use dashu_int::IBig;
 
 use super::integers::{Span, integer};
@@ -20,7 +21,7 @@ enum Corners<'a> {
     /// Both ends of a segment around the origin.
     Axis(Vec3),
     Listed(&'a [Vec3]),
-    Few([Vec3; 6]),
+    Few(ArrayVec<Vec3, 8>),
 }
 
 impl<'a> Polytope<'a> {
@@ -42,7 +43,8 @@ impl<'a> Polytope<'a> {
             Core::Convex(hull) => (Corners::Listed(hull.points()), 0.0),
             Core::Triangle(corners) => (Corners::Listed(corners), 0.0),
             Core::Segment(ends) => (Corners::Listed(ends), 0.0),
-            Core::Column(column) => (Corners::Few(column.corners()), 0.0),
+            Core::Column(column) => (Corners::Few(column.corners().into_iter().collect()), 0.0),
+            Core::Block(block) => (Corners::Few(block.corners().into()), 0.0),
             Core::Cylinder { .. }
             | Core::Cone { .. }
             | Core::Ellipsoid { .. }
@@ -51,7 +53,8 @@ impl<'a> Polytope<'a> {
             | Core::Mesh(_)
             | Core::Compound(_)
             | Core::HeightField(_)
-            | Core::PointCloud(_) => return None,
+            | Core::PointCloud(_)
+            | Core::Voxels(_) => return None,
         };
         let span = match &corners {
             Corners::Origin => Span::EMPTY,

@@ -69,6 +69,8 @@ impl Model {
                 let place = self.find(body)?;
                 self.bodies[place].radius = inflated(*scale, *padding)?;
             }
+            // The model's bodies are balls.
+            Edit::InsertPoints { .. } | Edit::ClearBox { .. } => return None,
             Edit::SetGroups { body, groups } => {
                 let place = self.find(body)?;
                 self.bodies[place].groups = groups.iter().cloned().collect();

@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use tonic::{Request, Response, Status, Streaming};
 
+use super::grpc_timeout::grpc_timeout;
 use super::handlers::{Handlers, respond};
 use super::status::status_of;
-use crate::service::{ContentHash, ServiceError, Stored};
-use crate::transports::wire::v1;
+use crate::service::{ContentHash, Patience, ServiceError, Stored};
 use crate::transports::wire::v1::assets_server::Assets;
 use crate::transports::wire::v1::put_asset_request::Part;
+use crate::transports::wire::{from_proto, to_proto, v1};
 
 #[tonic::async_trait]
 impl Assets for Handlers {
@@ -25,6 +26,17 @@ impl Assets for Handlers {
         };
         let present = hashes.iter().enumerate().map(present).collect::<Result<_, ServiceError>>();
         respond(present.map(|present| v1::HasAssetsResponse { present }))
+    }
+
+    async fn describe_mesh(
+        &self,
+        request: Request<v1::DescribeMeshRequest>,
+    ) -> Result<Response<v1::DescribeMeshResponse>, Status> {
+        let timeout = grpc_timeout(request.metadata()).map_err(|error| status_of(&error))?;
+        let asked = from_proto::mesh_card_request(&request.into_inner()).map_err(|error| status_of(&error))?;
+        let patience = Patience { timeout, ..Patience::default() };
+        let card = self.service.mesh_card(asked, patience, from_proto::unusable_mesh).await;
+        respond(card.map(|card| v1::DescribeMeshResponse { card: Some(to_proto::mesh_card(&card)) }))
     }
 
     async fn put_asset(

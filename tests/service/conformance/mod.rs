@@ -5,12 +5,14 @@ mod bad_input;
 mod caps;
 mod casts;
 mod contacts;
+mod decompositions;
 mod fields;
 mod motions;
 mod questions;
 mod revisions;
 mod robots;
 mod scenes;
+mod voxels;
 
 /// Makes a test of each behaviour for each door.
 macro_rules! through_every_door {

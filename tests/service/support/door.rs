@@ -63,6 +63,7 @@ pub trait Door {
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth>;
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse>;
     async fn put_asset(&self, announced: v1::AssetHeader, bytes: &[u8]) -> Told<v1::PutAssetResponse>;
+    async fn describe_mesh(&self, request: v1::DescribeMeshRequest) -> Told<v1::MeshCard>;
     async fn load_robot(&self, request: v1::LoadRobotRequest) -> Told<v1::RobotModel>;
     async fn check_states(&self, request: v1::CheckStatesRequest) -> Told<v1::Answer>;
     async fn collide(&self, request: v1::CollideRequest) -> Told<v1::Answer>;
@@ -178,6 +179,12 @@ impl Door for InProcess {
             bytes: stored.bytes as u64,
             already_present: stored.already_present,
         })
+    }
+
+    async fn describe_mesh(&self, request: v1::DescribeMeshRequest) -> Told<v1::MeshCard> {
+        let asked = from_proto::mesh_card_request(&request)?;
+        let card = self.service.mesh_card(asked, Patience::default(), from_proto::unusable_mesh).await?;
+        Ok(to_proto::mesh_card(&card))
     }
 
     async fn load_robot(&self, request: v1::LoadRobotRequest) -> Told<v1::RobotModel> {
@@ -344,6 +351,10 @@ impl Door for Grpc {
         let parts = std::iter::once(Part::Header(announced)).chain(chunks);
         let parts: Vec<_> = parts.map(|part| v1::PutAssetRequest { part: Some(part) }).collect();
         Ok(AssetsClient::new(self.channel.clone()).put_asset(tokio_stream::iter(parts)).await?.into_inner())
+    }
+
+    async fn describe_mesh(&self, request: v1::DescribeMeshRequest) -> Told<v1::MeshCard> {
+        Ok(AssetsClient::new(self.channel.clone()).describe_mesh(request).await?.into_inner().card.unwrap())
     }
 
     async fn load_robot(&self, request: v1::LoadRobotRequest) -> Told<v1::RobotModel> {

@@ -7,7 +7,7 @@
 Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are :class:`ClearanceError`.
 """
 
-from .answers import Applied, Bracket, Cost, ItemAnswer, PairAnswer, Side, StatesAnswer, Verdict
+from .answers import Applied, Bracket, Cost, ItemAnswer, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
 from .casts import (
     CastHit,
     CastItem,
@@ -28,7 +28,9 @@ from .edits import (
     add_robot,
     allow_collision,
     body,
+    clear_box,
     group,
+    insert_points,
     link,
     move_body,
     move_robot,
@@ -69,6 +71,7 @@ from .shapes import (
     segment,
     sphere,
     triangle,
+    voxels,
 )
 
 __all__ = [
@@ -93,6 +96,7 @@ __all__ = [
     "ItemAnswer",
     "Joint",
     "LimitExceeded",
+    "MeshCard",
     "MotionsAnswer",
     "NearestItem",
     "NotFound",
@@ -117,6 +121,7 @@ __all__ = [
     "box_region",
     "capsule",
     "changed_since",
+    "clear_box",
     "compound",
     "cone",
     "convex",
@@ -124,6 +129,7 @@ __all__ = [
     "ellipsoid",
     "group",
     "half_space",
+    "insert_points",
     "height_field",
     "link",
     "mesh",
@@ -145,4 +151,5 @@ __all__ = [
     "shape_region",
     "sphere",
     "triangle",
+    "voxels",
 ]

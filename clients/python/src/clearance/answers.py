@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .v1 import geometry_pb2 as geometry
 from .v1 import query_pb2 as messages
+from .v1 import service_pb2 as service
 
 
 class Verdict(IntEnum):
@@ -33,6 +34,28 @@ class Applied:
     revision: int
     #: Ids of the bodies that were added, in the order of their edits.
     added: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class MeshCard:
+    """What the convex pieces of a mesh cost. Metres."""
+
+    pieces: int
+    #: Of memory.
+    bytes: int
+    build_seconds: float
+    #: How far a point of a piece may be from the mesh, and from what it encloses if it is `closed`.
+    inflation: Bracket
+    #: How far a point of the mesh's surface may be from all pieces.
+    loss: Bracket
+    #: Whether the mesh is closed and faces outwards; if not, the inside of pieces counts as inflation.
+    closed: bool
+
+    @classmethod
+    def of(cls, card: service.MeshCard) -> MeshCard:
+        inflation = Bracket(card.inflation.lower, card.inflation.upper)
+        loss = Bracket(card.loss.lower, card.loss.upper)
+        return cls(card.pieces, card.bytes, card.build_seconds, inflation, loss, card.closed)
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,17 @@ import grpc
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .answers import Applied, ItemAnswer, StatesAnswer
+from .answers import Applied, ItemAnswer, MeshCard, StatesAnswer
 from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
 from .contacts import ContactWatch
 from .edits import BodyName, body_ref
 from . import motions as motion_messages
 from .errors import translated
 from .motions import MotionsAnswer
+from .poses import Vector, vec3
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
-from .shapes import mesh_mode
+from .shapes import mesh_format, mesh_mode
 from .v1 import cast_pb2 as cast
 from .v1 import contact_pb2 as contact
 from .v1 import geometry_pb2 as geometry
@@ -140,6 +141,28 @@ class Client:
                 if not here:
                     self._assets.PutAsset(_upload(data, sha256), timeout=self._timeout)
         return hashes
+
+
+    def describe_mesh(
+        self,
+        data: bytes,
+        file_format: str,
+        mode: str = "decompose",
+        *,
+        scale: Vector = (1.0, 1.0, 1.0),
+        accuracy: Optional[float] = None,
+    ) -> MeshCard:
+        """What a mesh file (`obj`, `stl`, `dae`, `gltf`) costs as one hull (`hull`) or as a few (`decompose`), and how well they fit it.
+
+        `accuracy`: how wide the brackets of the figures may be, metres; by default a thousandth of the mesh's longest side.
+        """
+        (sha256,) = self.upload([data])
+        mesh = geometry.MeshAsset(
+            sha256=sha256, format=mesh_format(file_format), mode=mesh_mode(mode), scale=vec3("scale", scale)
+        )
+        with translated():
+            request = service.DescribeMeshRequest(mesh=mesh, accuracy=accuracy)
+            return MeshCard.of(self._assets.DescribeMesh(request, timeout=self._timeout).card)
 
 
 class Scene:

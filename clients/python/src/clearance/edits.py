@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import Optional, Sequence, Union
 
+from numpy.typing import ArrayLike
+
+from .poses import Vector, vec3
 from .poses import pose as make_pose
 from .robots import Robot
+from .shapes import points_message
 from .v1 import geometry_pb2 as geometry
 from .v1 import scene_pb2 as messages
 from .v1.scene_pb2 import Edit, Party
@@ -57,6 +61,18 @@ def remove_body(name: BodyName) -> Edit:
 def replace_shape(name: BodyName, shape: geometry.Shape, *, padding: float = 0.0, scale: float = 1.0) -> Edit:
     message = messages.ReplaceShape(body=body_ref(name), shape=shape, padding=padding, scale=scale)
     return Edit(replace_shape=message)
+
+
+def insert_points(name: BodyName, points: ArrayLike) -> Edit:
+    """A body of voxels gets the cells of these points too, shape (n, 3), metres, in the body's frame."""
+    message = messages.InsertPoints(body=body_ref(name), points=points_message("points", points))
+    return Edit(insert_points=message)
+
+
+def clear_box(name: BodyName, least: Vector, greatest: Vector) -> Edit:
+    """A body of voxels loses every cell that a point of the box belongs to; corners in metres, in the body's frame."""
+    box = geometry.Aabb(min=vec3("least", least), max=vec3("greatest", greatest))
+    return Edit(clear_box=messages.ClearBox(body=body_ref(name), box=box))
 
 
 def add_robot(name: str, model: Robot, base: Optional[geometry.Pose] = None) -> Edit:

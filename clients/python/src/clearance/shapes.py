@@ -5,7 +5,7 @@ Every shape may be grown by a ball: `ball_swept(box([1, 1, 1]), 0.1)`.
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,11 +18,27 @@ MESH_MODES = {
     "exact": geometry.MESH_MODE_EXACT,
     "hull": geometry.MESH_MODE_HULL,
     "solid": geometry.MESH_MODE_SOLID,
+    "decompose": geometry.MESH_MODE_DECOMPOSE,
 }
 
 
+MESH_FORMATS = {
+    "obj": geometry.MESH_FORMAT_OBJ,
+    "stl": geometry.MESH_FORMAT_STL,
+    "dae": geometry.MESH_FORMAT_DAE,
+    "gltf": geometry.MESH_FORMAT_GLTF,
+}
+
+
+def mesh_format(name: str) -> geometry.MeshFormat:
+    """How the bytes of a mesh file are read: `obj`, `stl`, `dae` or `gltf`."""
+    if name not in MESH_FORMATS:
+        raise ValueError(f"format: is {name!r}, known are {', '.join(MESH_FORMATS)}")
+    return MESH_FORMATS[name]
+
+
 def mesh_mode(name: str) -> geometry.MeshMode:
-    """`exact` (the surface), `hull` (the convex hull) or `solid` (the surface and its inside)."""
+    """`exact` (the surface), `hull` (the convex hull), `solid` (the surface and its inside) or `decompose` (a few convex hulls)."""
     if name not in MESH_MODES:
         raise ValueError(f"mode: is {name!r}, known are {', '.join(MESH_MODES)}")
     return MESH_MODES[name]
@@ -96,14 +112,35 @@ def height_field(heights: ArrayLike, spacing: Sequence[float], floor: float) -> 
     rows, columns = array.shape
     x, y = spacing
     message = geometry.HeightField(
-        rows=rows, columns=columns, spacing_x=x, spacing_y=y, heights=_numbers("heights", array), floor=floor
+        rows=rows, columns=columns, spacing_x=x, spacing_y=y, heights=numbers("heights", array), floor=floor
     )
     return Shape(height_field=message)
 
 
 def point_cloud(points: ArrayLike, radius: float = 0.0) -> Shape:
     """The union of balls of `radius` around `points`, shape (n, 3). An array of float32 is sent in half the bytes."""
-    return Shape(point_cloud=geometry.PointCloud(points=_numbers("points", _triples("points", points)), radius=radius))
+    return Shape(point_cloud=geometry.PointCloud(points=numbers("points", _triples("points", points)), radius=radius))
+
+
+def voxels(resolution: float, points: Optional[ArrayLike] = None, cells: Optional[ArrayLike] = None) -> Shape:
+    """The occupied cells of a grid of side `resolution`: those of `points`, shape (n, 3), and `cells`, integers of shape (m, 3).
+
+    Without either it is a map that nothing touches yet; see :func:`insert_points` and :func:`clear_box`.
+    """
+    message = geometry.Voxels(resolution=resolution)
+    if points is not None:
+        message.points.CopyFrom(numbers("points", _triples("points", points)))
+    if cells is not None:
+        indices = _triples("cells", cells)
+        if not np.issubdtype(indices.dtype, np.integer):
+            raise ValueError(f"cells: needs integers, has {indices.dtype}")
+        message.cells.extend(indices.ravel().tolist())
+    return Shape(voxels=message)
+
+
+def points_message(name: str, points: ArrayLike) -> geometry.Numbers:
+    """Points, shape (n, 3), as bytes."""
+    return numbers(name, _triples(name, points))
 
 
 def segment(a: Vector, b: Vector) -> Shape:
@@ -144,7 +181,7 @@ def _triples(name: str, values: ArrayLike) -> NDArray[Any]:
     return array
 
 
-def _numbers(name: str, array: NDArray[Any]) -> geometry.Numbers:
+def numbers(name: str, array: NDArray[Any]) -> geometry.Numbers:
     """Numbers row by row, as bytes."""
     if not (np.issubdtype(array.dtype, np.floating) or np.issubdtype(array.dtype, np.integer)):
         raise ValueError(f"{name}: needs numbers, has {array.dtype}")

@@ -1,10 +1,10 @@
-//! Shapes of many numbers: terrain and point clouds. Counts are held against the caps before anything is copied.
+//! Shapes of many numbers: terrain, point clouds and voxels. Counts are held against the caps before anything is copied.
 
 use std::sync::Arc;
 
 use super::Path;
 use super::geometry::refused;
-use crate::geometry::{Grid, HeightField, PointCloud, Shape, Vec3};
+use crate::geometry::{Grid, HeightField, PointCloud, Shape, Vec3, Voxels};
 use crate::limits::LimitExceeded;
 use crate::service::{Library, ServiceError};
 use crate::transports::wire::v1;
@@ -32,6 +32,34 @@ pub(super) fn point_cloud(path: &Path<'_>, cloud: &v1::PointCloud, library: &Lib
     let points = points(&path.field("points"), cloud.points.as_ref(), &cap, library)?;
     let made = PointCloud::new(&points).and_then(|points| Shape::point_cloud(Arc::new(points), cloud.radius));
     made.map_err(|error| refused(path, &error))
+}
+
+pub(super) fn voxels(path: &Path<'_>, voxels: &v1::Voxels, library: &Library) -> Result<Shape, ServiceError> {
+    let most = library.limits().max_voxel_cells;
+    let (cells, rest) = voxels.cells.as_chunks::<3>();
+    if !rest.is_empty() {
+        let problem = format!("has {} numbers, which is not a multiple of 3", voxels.cells.len());
+        return Err(path.field("cells").invalid(problem));
+    }
+    LimitExceeded::check("max_voxel_cells", cells.len(), most)?;
+    let points = match &voxels.points {
+        Some(_) => inserted_points(&path.field("points"), voxels.points.as_ref(), library)?,
+        None => Vec::new(),
+    };
+    let map = Voxels::new(voxels.resolution).and_then(|map| map.with_cells(cells)?.with_points(&points));
+    let map = map.map_err(|error| refused(path, &error))?;
+    LimitExceeded::check("max_voxel_cells", map.len(), most)?;
+    Ok(Shape::voxels(map))
+}
+
+/// Points that are inserted into voxels.
+pub(super) fn inserted_points(
+    path: &Path<'_>,
+    message: Option<&v1::Numbers>,
+    library: &Library,
+) -> Result<Vec<Vec3>, ServiceError> {
+    let cap = Cap { name: "max_cloud_points", most: library.limits().max_cloud_points, each: 3 };
+    points(path, message, &cap, library)
 }
 
 /// Triples of numbers.

@@ -6,11 +6,11 @@ use super::{Path, fields};
 use crate::geometry::mesh_file::MeshFormat;
 use crate::geometry::tolerance::LARGEST_LENGTH;
 use crate::geometry::{
-    Compound, ConvexHull, InvalidPose, InvalidShape, Part, Pose, Quaternion, Shape, TriangleMesh, Vec3,
+    Compound, ConvexHull, InvalidPose, InvalidShape, Part, Pose, Quaternion, Shape, TriangleMesh, Vec3, decomposed,
 };
 use crate::limits::{LimitExceeded, Limits};
 use crate::robot::MeshUse;
-use crate::service::{Library, MeshReading, ServiceError, UnusableMesh};
+use crate::service::{ContentHash, Library, MeshCardRequest, MeshReading, ServiceError, UnusableMesh};
 use crate::transports::wire::v1;
 
 /// A pose; absent parts mean no translation and no rotation.
@@ -79,6 +79,7 @@ fn core(path: &Path<'_>, core: Option<&v1::shape::Core>, library: &Library) -> R
         Core::Compound(compound) => return self::compound(&path.field("compound"), compound, library),
         Core::HeightField(field) => return fields::height_field(&path.field("height_field"), field, library),
         Core::PointCloud(cloud) => return fields::point_cloud(&path.field("point_cloud"), cloud, library),
+        Core::Voxels(voxels) => return fields::voxels(&path.field("voxels"), voxels, library),
         Core::Point(v1::Point {}) => return Ok(Shape::point()),
         Core::Segment(segment) => {
             let path = path.field("segment");
@@ -115,6 +116,7 @@ fn inline_mesh(path: &Path<'_>, mesh: &v1::Mesh, limits: &Limits) -> Result<Shap
     let shape = match required_mesh_mode(&path.field("mode"), mesh.mode)? {
         MeshUse::Exact => TriangleMesh::surface(vertices, corners.to_vec()).map(|mesh| Shape::mesh(Arc::new(mesh))),
         MeshUse::Solid => TriangleMesh::solid(vertices, corners.to_vec()).map(|mesh| Shape::mesh(Arc::new(mesh))),
+        MeshUse::Decompose => decomposed(&vertices, corners).map(|pieces| Shape::compound(Arc::new(pieces))),
         MeshUse::Hull => {
             LimitExceeded::check("max_hull_points", vertices.len(), limits.max_hull_points)?;
             ConvexHull::new(&vertices).map(|hull| Shape::hull(Arc::new(hull)))
@@ -124,6 +126,12 @@ fn inline_mesh(path: &Path<'_>, mesh: &v1::Mesh, limits: &Limits) -> Result<Shap
 }
 
 fn mesh_asset(path: &Path<'_>, asset: &v1::MeshAsset, library: &Library) -> Result<Shape, ServiceError> {
+    let (hash, reading) = mesh_reading(path, asset)?;
+    library.mesh_shape(hash, &reading).map_err(|error| unusable(path, error))
+}
+
+/// Which file, and how it is read.
+fn mesh_reading(path: &Path<'_>, asset: &v1::MeshAsset) -> Result<(ContentHash, MeshReading), ServiceError> {
     let hash = asset.sha256.parse().map_err(|error| path.field("sha256").invalid(error))?;
     let format = mesh_format(&path.field("format"), asset.format)?;
     let reading = MeshReading {
@@ -131,12 +139,38 @@ fn mesh_asset(path: &Path<'_>, asset: &v1::MeshAsset, library: &Library) -> Resu
         mode: required_mesh_mode(&path.field("mode"), asset.mode)?,
         scale: asset.scale.as_ref().map_or_else(|| Vec3::repeat(1.0), vec3),
     };
-    library.mesh_shape(hash, &reading).map_err(|error| match error {
+    Ok((hash, reading))
+}
+
+/// What a mesh costs as convex pieces.
+///
+/// # Errors
+/// A field that is missing or cannot be.
+pub fn mesh_card_request(request: &v1::DescribeMeshRequest) -> Result<MeshCardRequest, ServiceError> {
+    let path = Path::root("mesh");
+    let (hash, reading) = mesh_reading(&path, path.required(request.mesh.as_ref())?)?;
+    if !matches!(reading.mode, MeshUse::Hull | MeshUse::Decompose) {
+        return Err(path.field("mode").invalid("makes no convex pieces: HULL and DECOMPOSE do"));
+    }
+    if let Some(accuracy) = request.accuracy.filter(|accuracy| !(accuracy.is_finite() && *accuracy > 0.0)) {
+        return Err(Path::root("accuracy").invalid(format!("{accuracy} is not a positive number of metres")));
+    }
+    Ok(MeshCardRequest { hash, reading, accuracy: request.accuracy })
+}
+
+/// What is wrong with the mesh of a [`mesh_card_request`].
+#[must_use]
+pub fn unusable_mesh(error: UnusableMesh) -> ServiceError {
+    unusable(&Path::root("mesh"), error)
+}
+
+fn unusable(path: &Path<'_>, error: UnusableMesh) -> ServiceError {
+    match error {
         UnusableMesh::Missing(hash) => ServiceError::NotFound { what: "asset", name: hash.to_string() },
         UnusableMesh::TooLarge(exceeded) => ServiceError::Limit(exceeded),
         UnusableMesh::File(error) => path.field("sha256").invalid(error),
         UnusableMesh::Shape(error) => path.invalid(error),
-    })
+    }
 }
 
 fn compound(path: &Path<'_>, compound: &v1::Compound, library: &Library) -> Result<Shape, ServiceError> {
@@ -165,6 +199,7 @@ pub fn mesh_mode(path: &Path<'_>, number: i32) -> Result<Option<MeshUse>, Servic
         Ok(v1::MeshMode::Exact) => Ok(Some(MeshUse::Exact)),
         Ok(v1::MeshMode::Hull) => Ok(Some(MeshUse::Hull)),
         Ok(v1::MeshMode::Solid) => Ok(Some(MeshUse::Solid)),
+        Ok(v1::MeshMode::Decompose) => Ok(Some(MeshUse::Decompose)),
         Err(_) => Err(path.invalid(format!("has the unknown value {number}"))),
     }
 }
@@ -202,11 +237,14 @@ pub(super) fn refused(path: &Path<'_>, error: &InvalidShape) -> ServiceError {
         | InvalidShape::TooFew { field, .. }
         | InvalidShape::TooMany { field, .. }
         | InvalidShape::WrongCount { field, .. } => (*field).to_owned(),
+        InvalidShape::UpsideDown { axis } => format!("min.{axis}"),
         InvalidShape::BelowFloor { sample, .. } => format!("heights[{sample}]"),
         InvalidShape::ZeroNormal => "normal".to_owned(),
         InvalidShape::BadIndex { triangle, .. } => format!("triangles[{triangle}]"),
         InvalidShape::Part { part, .. } => format!("parts[{part}]"),
-        InvalidShape::NotClosed { .. } | InvalidShape::InsideOut { .. } => return path.invalid(text),
+        InvalidShape::NotClosed { .. } | InvalidShape::InsideOut { .. } | InvalidShape::NotDecomposed => {
+            return path.invalid(text);
+        }
     };
     // The texts begin with their field.
     let problem = text.strip_prefix(&inner).unwrap_or(&text).trim_start_matches([':', ' ']);

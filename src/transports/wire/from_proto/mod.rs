@@ -15,6 +15,7 @@ mod scene;
 pub use answer::{NotAnAnswer, answer};
 pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
 pub use contact::contact_question;
+pub use geometry::{mesh_card_request, unusable_mesh};
 pub use motion::{check_motions, check_path, clearance, motions};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;

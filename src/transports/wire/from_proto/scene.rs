@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use prost::Message;
 
-use super::{Path, geometry};
+use super::{Path, fields, geometry};
+use crate::geometry::Aabb;
 use crate::limits::{LimitExceeded, Limits};
 use crate::scene::{BodyId, BodyRef, BroadPhaseKind, Edit, Epoch, NewBody, Party, Revision, SceneOptions};
 use crate::service::{Change, ContentHash, IdempotencyKey, Library, Robots, ServiceError};
@@ -91,6 +92,21 @@ fn edit(path: &Path<'_>, edit: &v1::Edit, library: &Library, robots: &Robots) ->
                 scale: edit.scale.unwrap_or(1.0),
                 padding: edit.padding,
             })
+        }
+        Kind::InsertPoints(edit) => {
+            let path = path.field("insert_points");
+            let body = body_ref(&path.field("body"), edit.body.as_ref())?;
+            let points = fields::inserted_points(&path.field("points"), edit.points.as_ref(), library)?;
+            Ok(Edit::InsertPoints { body, points: points.into() })
+        }
+        Kind::ClearBox(edit) => {
+            let path = path.field("clear_box");
+            let body = body_ref(&path.field("body"), edit.body.as_ref())?;
+            let path = path.field("box");
+            let corners = path.required(edit.r#box.as_ref())?;
+            let corner = |name, v: &Option<v1::Vec3>| geometry::required_vec3(&path.field(name), v.as_ref());
+            let bounds = Aabb { min: corner("min", &corners.min)?, max: corner("max", &corners.max)? };
+            Ok(Edit::ClearBox { body, bounds })
         }
         Kind::SetGroups(edit) => {
             let path = path.field("set_groups");

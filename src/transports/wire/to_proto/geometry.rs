@@ -54,6 +54,11 @@ pub fn shape(shape: &Shape) -> v1::Shape {
             let points = numbers(cloud.as_given().iter().flatten());
             Wire::PointCloud(v1::PointCloud { points: Some(points), radius: 0.0 })
         }
+        Core::Voxels(map) => {
+            let cells = map.cells().into_iter().flatten().collect();
+            Wire::Voxels(v1::Voxels { resolution: map.resolution(), points: None, cells })
+        }
+        Core::Block(block) => Wire::Convex(v1::Convex { points: block.corners().map(vec3).into() }),
         Core::Column(column) => Wire::Convex(v1::Convex { points: column.corners().map(vec3).into() }),
     };
     v1::Shape { swept_radius, core: Some(core) }

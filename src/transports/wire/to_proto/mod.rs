@@ -6,6 +6,7 @@ mod contact;
 mod count;
 mod geometry;
 mod health;
+mod mesh_card;
 mod motion;
 mod question;
 mod robot;
@@ -18,6 +19,7 @@ pub use cast::{
 pub use contact::contact_messages;
 pub use geometry::{pose, shape};
 pub use health::scene_health;
+pub use mesh_card::mesh_card;
 pub use motion::{check_motions_request, check_path_request, clearance_request, motions};
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};

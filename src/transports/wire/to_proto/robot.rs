@@ -101,5 +101,6 @@ fn mesh_mode(mode: MeshUse) -> v1::MeshMode {
         MeshUse::Exact => v1::MeshMode::Exact,
         MeshUse::Solid => v1::MeshMode::Solid,
         MeshUse::Hull => v1::MeshMode::Hull,
+        MeshUse::Decompose => v1::MeshMode::Decompose,
     }
 }

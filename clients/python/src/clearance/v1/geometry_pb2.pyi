@@ -13,6 +13,7 @@ class MeshMode(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     MESH_MODE_EXACT: _ClassVar[MeshMode]
     MESH_MODE_HULL: _ClassVar[MeshMode]
     MESH_MODE_SOLID: _ClassVar[MeshMode]
+    MESH_MODE_DECOMPOSE: _ClassVar[MeshMode]
 
 class MeshFormat(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -25,6 +26,7 @@ MESH_MODE_UNSPECIFIED: MeshMode
 MESH_MODE_EXACT: MeshMode
 MESH_MODE_HULL: MeshMode
 MESH_MODE_SOLID: MeshMode
+MESH_MODE_DECOMPOSE: MeshMode
 MESH_FORMAT_UNSPECIFIED: MeshFormat
 MESH_FORMAT_OBJ: MeshFormat
 MESH_FORMAT_STL: MeshFormat
@@ -98,7 +100,7 @@ class Numbers(_message.Message):
     def __init__(self, packed: _Optional[_Union[PackedDoubles, _Mapping]] = ..., little_endian: _Optional[bytes] = ..., little_endian_f32: _Optional[bytes] = ..., sha256: _Optional[str] = ..., sha256_f32: _Optional[str] = ...) -> None: ...
 
 class Shape(_message.Message):
-    __slots__ = ("swept_radius", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "convex", "mesh", "mesh_asset", "compound", "point", "segment", "triangle", "half_space", "plane", "height_field", "point_cloud")
+    __slots__ = ("swept_radius", "sphere", "box", "capsule", "cylinder", "cone", "ellipsoid", "convex", "mesh", "mesh_asset", "compound", "point", "segment", "triangle", "half_space", "plane", "height_field", "point_cloud", "voxels")
     SWEPT_RADIUS_FIELD_NUMBER: _ClassVar[int]
     SPHERE_FIELD_NUMBER: _ClassVar[int]
     BOX_FIELD_NUMBER: _ClassVar[int]
@@ -117,6 +119,7 @@ class Shape(_message.Message):
     PLANE_FIELD_NUMBER: _ClassVar[int]
     HEIGHT_FIELD_FIELD_NUMBER: _ClassVar[int]
     POINT_CLOUD_FIELD_NUMBER: _ClassVar[int]
+    VOXELS_FIELD_NUMBER: _ClassVar[int]
     swept_radius: float
     sphere: Sphere
     box: Box
@@ -135,7 +138,8 @@ class Shape(_message.Message):
     plane: Plane
     height_field: HeightField
     point_cloud: PointCloud
-    def __init__(self, swept_radius: _Optional[float] = ..., sphere: _Optional[_Union[Sphere, _Mapping]] = ..., box: _Optional[_Union[Box, _Mapping]] = ..., capsule: _Optional[_Union[Capsule, _Mapping]] = ..., cylinder: _Optional[_Union[Cylinder, _Mapping]] = ..., cone: _Optional[_Union[Cone, _Mapping]] = ..., ellipsoid: _Optional[_Union[Ellipsoid, _Mapping]] = ..., convex: _Optional[_Union[Convex, _Mapping]] = ..., mesh: _Optional[_Union[Mesh, _Mapping]] = ..., mesh_asset: _Optional[_Union[MeshAsset, _Mapping]] = ..., compound: _Optional[_Union[Compound, _Mapping]] = ..., point: _Optional[_Union[Point, _Mapping]] = ..., segment: _Optional[_Union[Segment, _Mapping]] = ..., triangle: _Optional[_Union[Triangle, _Mapping]] = ..., half_space: _Optional[_Union[HalfSpace, _Mapping]] = ..., plane: _Optional[_Union[Plane, _Mapping]] = ..., height_field: _Optional[_Union[HeightField, _Mapping]] = ..., point_cloud: _Optional[_Union[PointCloud, _Mapping]] = ...) -> None: ...
+    voxels: Voxels
+    def __init__(self, swept_radius: _Optional[float] = ..., sphere: _Optional[_Union[Sphere, _Mapping]] = ..., box: _Optional[_Union[Box, _Mapping]] = ..., capsule: _Optional[_Union[Capsule, _Mapping]] = ..., cylinder: _Optional[_Union[Cylinder, _Mapping]] = ..., cone: _Optional[_Union[Cone, _Mapping]] = ..., ellipsoid: _Optional[_Union[Ellipsoid, _Mapping]] = ..., convex: _Optional[_Union[Convex, _Mapping]] = ..., mesh: _Optional[_Union[Mesh, _Mapping]] = ..., mesh_asset: _Optional[_Union[MeshAsset, _Mapping]] = ..., compound: _Optional[_Union[Compound, _Mapping]] = ..., point: _Optional[_Union[Point, _Mapping]] = ..., segment: _Optional[_Union[Segment, _Mapping]] = ..., triangle: _Optional[_Union[Triangle, _Mapping]] = ..., half_space: _Optional[_Union[HalfSpace, _Mapping]] = ..., plane: _Optional[_Union[Plane, _Mapping]] = ..., height_field: _Optional[_Union[HeightField, _Mapping]] = ..., point_cloud: _Optional[_Union[PointCloud, _Mapping]] = ..., voxels: _Optional[_Union[Voxels, _Mapping]] = ...) -> None: ...
 
 class Sphere(_message.Message):
     __slots__ = ("radius",)
@@ -244,6 +248,16 @@ class PointCloud(_message.Message):
     points: Numbers
     radius: float
     def __init__(self, points: _Optional[_Union[Numbers, _Mapping]] = ..., radius: _Optional[float] = ...) -> None: ...
+
+class Voxels(_message.Message):
+    __slots__ = ("resolution", "points", "cells")
+    RESOLUTION_FIELD_NUMBER: _ClassVar[int]
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    CELLS_FIELD_NUMBER: _ClassVar[int]
+    resolution: float
+    points: Numbers
+    cells: _containers.RepeatedScalarFieldContainer[int]
+    def __init__(self, resolution: _Optional[float] = ..., points: _Optional[_Union[Numbers, _Mapping]] = ..., cells: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class Point(_message.Message):
     __slots__ = ()

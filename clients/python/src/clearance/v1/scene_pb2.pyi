@@ -54,7 +54,7 @@ class Everything(_message.Message):
     def __init__(self) -> None: ...
 
 class Edit(_message.Message):
-    __slots__ = ("add_body", "move_body", "remove_body", "replace_shape", "set_groups", "set_layers", "add_robot", "move_robot", "remove_robot", "set_allowed_collision", "set_pair_margin", "set_enabled")
+    __slots__ = ("add_body", "move_body", "remove_body", "replace_shape", "set_groups", "set_layers", "add_robot", "move_robot", "remove_robot", "set_allowed_collision", "set_pair_margin", "set_enabled", "insert_points", "clear_box")
     ADD_BODY_FIELD_NUMBER: _ClassVar[int]
     MOVE_BODY_FIELD_NUMBER: _ClassVar[int]
     REMOVE_BODY_FIELD_NUMBER: _ClassVar[int]
@@ -67,6 +67,8 @@ class Edit(_message.Message):
     SET_ALLOWED_COLLISION_FIELD_NUMBER: _ClassVar[int]
     SET_PAIR_MARGIN_FIELD_NUMBER: _ClassVar[int]
     SET_ENABLED_FIELD_NUMBER: _ClassVar[int]
+    INSERT_POINTS_FIELD_NUMBER: _ClassVar[int]
+    CLEAR_BOX_FIELD_NUMBER: _ClassVar[int]
     add_body: AddBody
     move_body: MoveBody
     remove_body: RemoveBody
@@ -79,7 +81,9 @@ class Edit(_message.Message):
     set_allowed_collision: SetAllowedCollision
     set_pair_margin: SetPairMargin
     set_enabled: SetEnabled
-    def __init__(self, add_body: _Optional[_Union[AddBody, _Mapping]] = ..., move_body: _Optional[_Union[MoveBody, _Mapping]] = ..., remove_body: _Optional[_Union[RemoveBody, _Mapping]] = ..., replace_shape: _Optional[_Union[ReplaceShape, _Mapping]] = ..., set_groups: _Optional[_Union[SetGroups, _Mapping]] = ..., set_layers: _Optional[_Union[SetLayers, _Mapping]] = ..., add_robot: _Optional[_Union[AddRobot, _Mapping]] = ..., move_robot: _Optional[_Union[MoveRobot, _Mapping]] = ..., remove_robot: _Optional[_Union[RemoveRobot, _Mapping]] = ..., set_allowed_collision: _Optional[_Union[SetAllowedCollision, _Mapping]] = ..., set_pair_margin: _Optional[_Union[SetPairMargin, _Mapping]] = ..., set_enabled: _Optional[_Union[SetEnabled, _Mapping]] = ...) -> None: ...
+    insert_points: InsertPoints
+    clear_box: ClearBox
+    def __init__(self, add_body: _Optional[_Union[AddBody, _Mapping]] = ..., move_body: _Optional[_Union[MoveBody, _Mapping]] = ..., remove_body: _Optional[_Union[RemoveBody, _Mapping]] = ..., replace_shape: _Optional[_Union[ReplaceShape, _Mapping]] = ..., set_groups: _Optional[_Union[SetGroups, _Mapping]] = ..., set_layers: _Optional[_Union[SetLayers, _Mapping]] = ..., add_robot: _Optional[_Union[AddRobot, _Mapping]] = ..., move_robot: _Optional[_Union[MoveRobot, _Mapping]] = ..., remove_robot: _Optional[_Union[RemoveRobot, _Mapping]] = ..., set_allowed_collision: _Optional[_Union[SetAllowedCollision, _Mapping]] = ..., set_pair_margin: _Optional[_Union[SetPairMargin, _Mapping]] = ..., set_enabled: _Optional[_Union[SetEnabled, _Mapping]] = ..., insert_points: _Optional[_Union[InsertPoints, _Mapping]] = ..., clear_box: _Optional[_Union[ClearBox, _Mapping]] = ...) -> None: ...
 
 class AddBody(_message.Message):
     __slots__ = ("name", "shape", "pose", "groups", "layers", "mask", "padding", "scale")
@@ -108,6 +112,22 @@ class MoveBody(_message.Message):
     body: BodyRef
     pose: _geometry_pb2.Pose
     def __init__(self, body: _Optional[_Union[BodyRef, _Mapping]] = ..., pose: _Optional[_Union[_geometry_pb2.Pose, _Mapping]] = ...) -> None: ...
+
+class InsertPoints(_message.Message):
+    __slots__ = ("body", "points")
+    BODY_FIELD_NUMBER: _ClassVar[int]
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    body: BodyRef
+    points: _geometry_pb2.Numbers
+    def __init__(self, body: _Optional[_Union[BodyRef, _Mapping]] = ..., points: _Optional[_Union[_geometry_pb2.Numbers, _Mapping]] = ...) -> None: ...
+
+class ClearBox(_message.Message):
+    __slots__ = ("body", "box")
+    BODY_FIELD_NUMBER: _ClassVar[int]
+    BOX_FIELD_NUMBER: _ClassVar[int]
+    body: BodyRef
+    box: _geometry_pb2.Aabb
+    def __init__(self, body: _Optional[_Union[BodyRef, _Mapping]] = ..., box: _Optional[_Union[_geometry_pb2.Aabb, _Mapping]] = ...) -> None: ...
 
 class RemoveBody(_message.Message):
     __slots__ = ("body",)

@@ -2,6 +2,7 @@ from clearance.v1 import health_pb2 as _health_pb2
 from clearance.v1 import cast_pb2 as _cast_pb2
 from clearance.v1 import contact_pb2 as _contact_pb2
 from clearance.v1 import motion_pb2 as _motion_pb2
+from clearance.v1 import geometry_pb2 as _geometry_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
@@ -162,6 +163,38 @@ class PutAssetResponse(_message.Message):
     bytes: int
     already_present: bool
     def __init__(self, sha256: _Optional[str] = ..., bytes: _Optional[int] = ..., already_present: bool = ...) -> None: ...
+
+class DescribeMeshRequest(_message.Message):
+    __slots__ = ("mesh", "accuracy")
+    MESH_FIELD_NUMBER: _ClassVar[int]
+    ACCURACY_FIELD_NUMBER: _ClassVar[int]
+    mesh: _geometry_pb2.MeshAsset
+    accuracy: float
+    def __init__(self, mesh: _Optional[_Union[_geometry_pb2.MeshAsset, _Mapping]] = ..., accuracy: _Optional[float] = ...) -> None: ...
+
+class DescribeMeshResponse(_message.Message):
+    __slots__ = ("card",)
+    CARD_FIELD_NUMBER: _ClassVar[int]
+    card: MeshCard
+    def __init__(self, card: _Optional[_Union[MeshCard, _Mapping]] = ...) -> None: ...
+
+class MeshCard(_message.Message):
+    __slots__ = ("pieces", "bytes", "build_seconds", "inflation", "loss", "closed", "points")
+    PIECES_FIELD_NUMBER: _ClassVar[int]
+    BYTES_FIELD_NUMBER: _ClassVar[int]
+    BUILD_SECONDS_FIELD_NUMBER: _ClassVar[int]
+    INFLATION_FIELD_NUMBER: _ClassVar[int]
+    LOSS_FIELD_NUMBER: _ClassVar[int]
+    CLOSED_FIELD_NUMBER: _ClassVar[int]
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    pieces: int
+    bytes: int
+    build_seconds: float
+    inflation: _query_pb2.Bracket
+    loss: _query_pb2.Bracket
+    closed: bool
+    points: int
+    def __init__(self, pieces: _Optional[int] = ..., bytes: _Optional[int] = ..., build_seconds: _Optional[float] = ..., inflation: _Optional[_Union[_query_pb2.Bracket, _Mapping]] = ..., loss: _Optional[_Union[_query_pb2.Bracket, _Mapping]] = ..., closed: bool = ..., points: _Optional[int] = ...) -> None: ...
 
 class LoadRobotResponse(_message.Message):
     __slots__ = ("robot",)

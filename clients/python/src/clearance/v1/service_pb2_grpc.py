@@ -347,6 +347,11 @@ class AssetsStub(object):
                 request_serializer=clearance_dot_v1_dot_service__pb2.PutAssetRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.PutAssetResponse.FromString,
                 _registered_method=True)
+        self.DescribeMesh = channel.unary_unary(
+                '/clearance.v1.Assets/DescribeMesh',
+                request_serializer=clearance_dot_v1_dot_service__pb2.DescribeMeshRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_service__pb2.DescribeMeshResponse.FromString,
+                _registered_method=True)
 
 
 class AssetsServicer(object):
@@ -367,6 +372,13 @@ class AssetsServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def DescribeMesh(self, request, context):
+        """What a mesh file costs as convex pieces, and how well they fit it. Makes the pieces anew each time.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_AssetsServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -379,6 +391,11 @@ def add_AssetsServicer_to_server(servicer, server):
                     servicer.PutAsset,
                     request_deserializer=clearance_dot_v1_dot_service__pb2.PutAssetRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.PutAssetResponse.SerializeToString,
+            ),
+            'DescribeMesh': grpc.unary_unary_rpc_method_handler(
+                    servicer.DescribeMesh,
+                    request_deserializer=clearance_dot_v1_dot_service__pb2.DescribeMeshRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_service__pb2.DescribeMeshResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -436,6 +453,33 @@ class Assets(object):
             '/clearance.v1.Assets/PutAsset',
             clearance_dot_v1_dot_service__pb2.PutAssetRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.PutAssetResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def DescribeMesh(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Assets/DescribeMesh',
+            clearance_dot_v1_dot_service__pb2.DescribeMeshRequest.SerializeToString,
+            clearance_dot_v1_dot_service__pb2.DescribeMeshResponse.FromString,
             options,
             channel_credentials,
             insecure,
