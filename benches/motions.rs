@@ -6,6 +6,7 @@
 
 #[path = "../tests/query/edges.rs"]
 mod edges;
+#[allow(dead_code, reason = "shared with the tests, which ask about its states, too")]
 #[path = "../tests/query/workload.rs"]
 mod workload;
 

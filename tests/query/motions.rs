@@ -184,9 +184,10 @@ fn a_robot_that_folds_onto_itself_collides() {
     let (mut free, mut hit) = (0.0, 1.0);
     while hit - free > 1e-9 {
         let middle = 0.5 * (free + hit);
-        match state(&snapshot, "arm", &start, &goal, middle) {
-            Verdict::Collision => hit = middle,
-            _ => free = middle,
+        if state(&snapshot, "arm", &start, &goal, middle) == Verdict::Collision {
+            hit = middle;
+        } else {
+            free = middle;
         }
     }
     assert!(t0 <= hit && free <= t1 && t1 - t0 < 1e-3, "[{t0}, {t1}] {hit}");
@@ -391,7 +392,7 @@ fn hold_the_ur5_against_samples(each: usize, samples: usize) {
             Verdict::Free => count[0] += 1,
             Verdict::Collision => count[1] += 1,
             Verdict::Indeterminate(_) => count[2] += 1,
-            other => panic!("{}: {other:?}", edge.kind),
+            Verdict::Margin | Verdict::NotRun | Verdict::InvalidInput => panic!("{}: {item:?}", edge.kind),
         }
     }
     println!("{} free, {} in collision, {} undecided", count[0], count[1], count[2]);
