@@ -36,7 +36,7 @@ impl<T: Clone> SharedArray<T> {
     pub(super) fn push(&mut self, value: T) {
         let index = self.length;
         self.length += 1;
-        if index < self.lists.len() * PAGE * PAGE && index % PAGE != 0 {
+        if index < self.lists.len() * PAGE * PAGE && !index.is_multiple_of(PAGE) {
             self.set(index as u32, value);
             return;
         }

@@ -21,7 +21,6 @@ pub(super) struct IdMap<T> {
 }
 
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "both kinds fill most of their allocation, and stand behind an Arc")]
 enum Node<T> {
     Branch([Option<Arc<Node<T>>>; FANOUT]),
     Leaf([Option<T>; FANOUT]),
