@@ -6,3 +6,4 @@ mod connections;
 mod histories;
 mod process;
 mod support;
+mod watching;

@@ -4,6 +4,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, ExitStatus, Stdio};
 
 use clearance::transports::grpc::Client;
+use clearance::transports::wire::v1;
+use clearance::transports::wire::v1::queries_client::QueriesClient;
 
 use crate::support::watchdog::{eventually, watched};
 
@@ -58,6 +60,23 @@ async fn sigterm_ends_a_daemon_that_was_asked_with_success() {
     assert_eq!(child.ended().await.code(), Some(0));
     let error = watched("a call to nobody", client.server_info()).await.unwrap_err();
     assert!(!error.to_string().is_empty());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_killed_daemon_does_not_leave_the_readers_of_its_watches_waiting() {
+    let mut child = Killed(serve().spawn().unwrap());
+    let stdout = child.0.stdout.take().unwrap();
+    let line = tokio::task::spawn_blocking(move || BufReader::new(stdout).lines().next().unwrap().unwrap());
+    let line = watched("the first line", line).await.unwrap();
+    let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}"));
+    watched("connecting", Client::connect(address)).await.unwrap().create_scene("cell").await.unwrap();
+    let mut queries = QueriesClient::connect(format!("http://{address}")).await.unwrap();
+    let context = Some(v1::Context { scene: "cell".to_owned(), ..v1::Context::default() });
+    let request = v1::WatchContactsRequest { context, ..v1::WatchContactsRequest::default() };
+    let mut watch = queries.watch_contacts(request).await.unwrap().into_inner();
+    assert_eq!(watched("the first step", watch.message()).await.unwrap().unwrap().revision, 0);
+    child.0.kill().unwrap();
+    assert!(watched("the end of the watch", watch.message()).await.is_err());
 }
 
 #[test]

@@ -7,6 +7,7 @@ published; each with 1e3, 1e4, 1e5 and 1e6 boxes. See README.md.
 import argparse
 import shlex
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import report
 from boxes import QUESTIONS
 from contenders import start_all
 from race import run
-from rows import rows_named
+from rows import SWEEPS, rows_named
 from sizes import SIZES
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -26,9 +27,13 @@ RESULTS = ROOT / "benches/results"
 class Settings:
     rounds: int | None
     questions: int
+    #: Configurations that take no part.
+    without: tuple[str, ...]
+    start: float
 
     def report(self, size, race, entries):
-        print(report.progress(size, race, entries), file=sys.stderr, flush=True)
+        elapsed = time.monotonic() - self.start
+        print(f"{elapsed:4.0f} s  {report.progress(size, race, entries)}", file=sys.stderr, flush=True)
 
 
 def arguments():
@@ -38,7 +43,8 @@ def arguments():
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("rows", nargs="*", help="beginnings or patterns of rows, such as build or '100 %% moved'")
-    parser.add_argument("--quick", action="store_true", help="up to 1e5 boxes, 5 rounds, 500 questions: a minute")
+    quick = "up to 1e5 boxes, 5 rounds, 500 questions, no sweep and prune: a minute"
+    parser.add_argument("--quick", action="store_true", help=quick)
     parser.add_argument("--sizes", help="such as 1e3,1e5 (all four)")
     parser.add_argument("--rounds", type=int, help="at most so many rounds in which all make a pass in turn (21 to 7)")
     parser.add_argument("--cpu", type=int, default=1, help="the core that all contenders are pinned to (1)")
@@ -60,7 +66,8 @@ def main():
     chosen = arguments()
     rows, sizes = rows_named(chosen.rows), sizes_named(chosen)
     quick = chosen.quick
-    settings = Settings(chosen.rounds or (5 if quick else None), 500 if quick else QUESTIONS)
+    rounds, questions = chosen.rounds or (5 if quick else None), 500 if quick else QUESTIONS
+    settings = Settings(rounds, questions, SWEEPS if quick else (), time.monotonic())
     contenders = start_all(FOLDER, chosen.cpu)
     results = [run(size, FOLDER / size.file, contenders, rows, settings) for size in sizes]
     for contender in contenders:

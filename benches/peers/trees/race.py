@@ -17,8 +17,6 @@ from truth import Truth
 FEW_ROUNDS = 3
 #: A configuration whose pass takes this much longer than the fastest, and so many nanoseconds, leaves after few rounds.
 HOPELESS, BEARABLE = 10, 3e8
-#: Edits that are published one by one in a pass.
-EDITS = 64
 #: How far the distance of a ray's hit may be from the truth, as a part of its length.
 ROUNDING, SINGLE_ROUNDING = 1e-13, 1e-5
 
@@ -40,7 +38,8 @@ class Entry:
 
     def rounds(self):
         """Nanoseconds of each round: the median over its samples."""
-        return [grouped_median(ticks, self.contender.step) / self.contender.ticks_per_nanosecond for ticks in self.ticks]
+        medians = [grouped_median(ticks, self.contender.step) for ticks in self.ticks]
+        return [median / self.contender.ticks_per_nanosecond for median in medians]
 
     def median(self):
         return float(np.median(self.rounds()))
@@ -104,13 +103,13 @@ def run(size, path, contenders, rows, settings):
     data, races = Boxes(path), {}
     rounds = min(settings.rounds or size.rounds, size.rounds)
     wanted = {row.race for row in rows}
-    counts = {"build": size.repeats, "pairs": size.repeats, "publish": EDITS}
+    counts = {"build": size.repeats, "pairs": size.repeats, "publish": size.edits}
     for race in dict.fromkeys(row.race for row in ROWS):
         moves = race.operation == "moves"
         if race in wanted or moves:
             own = rounds if race in wanted else min(rounds, FEW_ROUNDS)
             frames = size.frames[race.percent] if moves else 0
-            races[race] = entries = entries_of(race, contenders)
+            races[race] = entries = entries_of(race, contenders, settings.without)
             race_rounds(race, entries, own, frames, data, contenders, counts.get(race.operation, settings.questions))
             settings.report(size, race, entries)
     memory = memory_of(races, size.count)
@@ -119,8 +118,9 @@ def run(size, path, contenders, rows, settings):
     return Result(size, {race: races[race] for race in races if race in wanted}, memory, pairs, wrong)
 
 
-def entries_of(race, contenders):
-    return [Entry(contender, config) for contender in contenders for config in contender.configs(race.operation)]
+def entries_of(race, contenders, without):
+    pairs = [(contender, config) for contender in contenders for config in contender.configs(race.operation)]
+    return [Entry(contender, config) for contender, config in pairs if config not in without]
 
 
 def race_rounds(race, entries, rounds, frames, data, contenders, count):
@@ -141,8 +141,8 @@ def race_rounds(race, entries, rounds, frames, data, contenders, count):
 
 def memory_of(races, count):
     """Of what took part in moves, bytes a box."""
-    moved = {(entry.contender, entry.config) for race, entries in races.items() if race.operation == "moves" for entry in entries}
-    held = {(contender.name, config): contender.memory(config) for contender, config in moved}
+    moving = [entry for race, entries in races.items() if race.operation == "moves" for entry in entries]
+    held = {(entry.name, entry.config): entry.contender.memory(entry.config) for entry in moving}
     return {key: (built / count, now / count) for key, (built, now) in held.items() if built}
 
 

@@ -8,7 +8,6 @@ from importlib.metadata import version
 from contenders import OURS, OURS_NATIVE, PEERS
 from measuring.machine import commit, processor
 
-
 HEAD = ("row", "peer", "its", "ours", "ratio", "target", "", "ours native", "ratio", *PEERS)
 
 
@@ -38,9 +37,8 @@ def row_cells(result, row):
         cells[3] = duration(ours.median())
         if theirs:
             cells[1:3] = entry_name(theirs), duration(theirs.median())
-            cells[4:7] = ratio(result, ours, theirs), "" if rival.target is None else f"{rival.target:g}", verdict(
-                result.ratio(ours, theirs), rival.target
-            )
+            target = "" if rival.target is None else f"{rival.target:g}"
+            cells[4:7] = ratio(result, ours, theirs), target, verdict(result.ratio(ours, theirs), rival.target)
         if native:
             cells[7] = duration(native.median())
             cells[8] = ratio(result, native, theirs) if theirs else ""
@@ -105,7 +103,8 @@ def memory(results):
         if key[0] == OURS_NATIVE:
             continue
         held = [result.memory.get(key) for result in results]
-        yield f"| {' '.join(key)} | " + " | ".join("{:.0f}, {:.0f}".format(*pair) if pair else "" for pair in held) + " |"
+        cells = ["{:.0f}, {:.0f}".format(*pair) if pair else "" for pair in held]
+        yield f"| {' '.join(key)} | " + " | ".join(cells) + " |"
 
 
 def answers(results):

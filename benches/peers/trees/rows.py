@@ -41,6 +41,8 @@ class Row:
 
 #: obvhs without repair; and Coal's `sap`, which has kept the pairs while boxes moved, and only lists them.
 NO_REPAIR, LIST_OF_PAIRS = ("refit",), ("sap",)
+#: Coal's sweep and prune: the slowest by far where boxes are many.
+SWEEPS = ("sap", "ssap")
 BOTH_PRECISIONS = (Rival("best f64", DOUBLE, 1.0), Rival("best f32", SINGLE, 1.3))
 
 ROWS = (

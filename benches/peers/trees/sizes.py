@@ -12,6 +12,8 @@ class Size:
     frames: dict[int, int]
     #: How often a pass builds a tree, or finds all pairs.
     repeats: int
+    #: Edits that a pass publishes one by one.
+    edits: int
 
     @property
     def file(self):
@@ -23,8 +25,8 @@ class Size:
 
 
 SIZES = (
-    Size(1_000, 21, {1: 16, 10: 2, 100: 1}, 8),
-    Size(10_000, 21, {1: 8, 10: 1, 100: 1}, 2),
-    Size(100_000, 15, {1: 2, 10: 1, 100: 1}, 1),
-    Size(1_000_000, 7, {1: 1, 10: 1, 100: 1}, 1),
+    Size(1_000, 21, {1: 16, 10: 2, 100: 1}, 8, 64),
+    Size(10_000, 21, {1: 8, 10: 1, 100: 1}, 2, 64),
+    Size(100_000, 15, {1: 2, 10: 1, 100: 1}, 1, 16),
+    Size(1_000_000, 7, {1: 1, 10: 1, 100: 1}, 1, 4),
 )

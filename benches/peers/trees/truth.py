@@ -1,4 +1,4 @@
-"""The right answers, found in another way than any contender's: candidates by the distance of centres, then all by hand."""
+"""The right answers, found in another way than any contender's: candidates by their centres, each then looked at."""
 
 import numpy as np
 from scipy.spatial import cKDTree

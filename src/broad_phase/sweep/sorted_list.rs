@@ -138,22 +138,29 @@ impl SortedList {
         }
     }
 
-    /// Puts `entry` in the place of the one whose key was `before`, and where it now belongs.
-    pub(super) fn change(&mut self, before: &Key, entry: &Entry) {
-        let (axis, key) = (self.axis, entry.key(self.axis));
+    /// Gives the entry whose key was `before` another box, and puts it where it now belongs. Says whether it is another
+    /// box; if not, nothing is copied.
+    pub(super) fn change(&mut self, before: &Key, tight: Aabb) -> bool {
+        let axis = self.axis;
         let at = place(&self.shelves, before);
         let within = place(&self.shelves[at].content, before);
+        let segment = &self.shelves[at].content[within].content;
+        let from = segment.place_of(before, axis);
+        let gone = segment.entry(from);
+        if gone.tight == tight {
+            return false;
+        }
+        let entry = &Entry { tight, ..gone };
+        let (gone, key) = (gone.tight, entry.key(axis));
         if !self.belongs(&key, at, within) {
             self.remove(before);
             self.insert(entry);
-            return;
+            return true;
         }
         let part = &mut self.shelves[at];
         let shelf = Arc::make_mut(&mut part.content);
         let segment = &mut shelf[within];
         let content = Arc::make_mut(&mut segment.content);
-        let from = content.place_of(before, axis);
-        let gone = content.entry(from).tight;
         // Insertion sort: the entries that it overtook, or that overtook it, make room.
         let mut to = from;
         while to > 0 && key.comes_before(&content.key(to - 1, axis)) {
@@ -173,6 +180,7 @@ impl SortedList {
         part.first = shelf[0].first;
         let shrinks = reaches_edge(&gone, &part.bounds);
         part.bounds = if shrinks { bounds_of(shelf) } else { part.bounds.union(&entry.tight) };
+        true
     }
 
     /// Whether a key belongs into that segment, as the segments are now.

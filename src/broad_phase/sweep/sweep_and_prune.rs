@@ -103,12 +103,9 @@ impl SweepAndPrune {
     /// changes the list.
     pub fn move_to(&mut self, proxy: ProxyId, tight: Aabb) -> bool {
         let before = self.key(proxy);
-        let entry = self.list.entry(&before);
-        if entry.tight == tight {
+        if !self.list.change(&before, tight) {
             return false;
         }
-        let entry = Entry { tight, ..entry };
-        self.list.change(&before, &entry);
         let at = tight.min[self.list.axis];
         if at != before.at {
             self.slots.set(proxy.0, Slot { at, state: SlotState::Taken });

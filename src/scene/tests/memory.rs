@@ -26,9 +26,9 @@ fn an_edit_writes_what_it_changes_however_large_the_scene() {
             assert!(whole / 3 < built && built < 3 * whole, "{kind:?}: wrote {built}, holds {whole}");
             (0..20).map(|i| move_one(&mut scene, 7 + 31 * i)).max().unwrap()
         });
-        // Thirty times the bodies: a level more in each map, and a longer list of pages.
-        assert!(written[1] < 3 * written[0], "{kind:?}: {written:?}");
-        assert!(written[0] >= size_of::<Body>() && written[1] < 64 << 10, "{kind:?}: {written:?}");
+        // Thirty times the bodies: a level or two more in each map, and longer lists of pages.
+        assert!(written[1] < 6 * written[0], "{kind:?}: {written:?}");
+        assert!(written[0] >= size_of::<Body>() && written[1] < 128 << 10, "{kind:?}: {written:?}");
     }
 }
 

@@ -55,9 +55,7 @@ impl Trees for Ours {
     }
 
     fn build(config: &str, boxes: &[Aabb]) -> Kept {
-        let mut tree = DynamicTree::new();
-        let entries = (0..).zip(boxes).map(|(i, bounds)| tree.insert(*bounds, i)).collect();
-        tree.settle();
+        let (tree, entries) = DynamicTree::build(boxes.iter().copied().zip(0..));
         let published = (config == "published").then(|| tree.clone());
         Kept { tree, entries, published }
     }

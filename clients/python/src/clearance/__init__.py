@@ -21,7 +21,8 @@ from .casts import (
     moving,
     shape_region,
 )
-from .client import DEFAULT_ADDRESS, Client, Scene
+from .client import DEFAULT_ADDRESS, Client, Scene, changed_since
+from .contacts import ContactEvent, ContactKind, ContactState, ContactStep, ContactWatch
 from .edits import (
     add_body,
     add_robot,
@@ -80,6 +81,11 @@ __all__ = [
     "Client",
     "DEFAULT_ADDRESS",
     "Conflict",
+    "ContactEvent",
+    "ContactKind",
+    "ContactState",
+    "ContactStep",
+    "ContactWatch",
     "Cost",
     "DeadlineExceeded",
     "Grazed",
@@ -110,6 +116,7 @@ __all__ = [
     "box",
     "box_region",
     "capsule",
+    "changed_since",
     "compound",
     "cone",
     "convex",

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from .answers import Applied, ItemAnswer, StatesAnswer
 from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
+from .contacts import ContactWatch
 from .edits import BodyName, body_ref
 from . import motions as motion_messages
 from .errors import translated
@@ -20,6 +21,7 @@ from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_mode
 from .v1 import cast_pb2 as cast
+from .v1 import contact_pb2 as contact
 from .v1 import geometry_pb2 as geometry
 from .v1 import health_pb2
 from .v1 import motion_pb2 as motion
@@ -34,8 +36,16 @@ DEFAULT_ADDRESS = "127.0.0.1:50551"
 #: Bytes of an upload sent in one message.
 _CHUNK = 1 << 20
 
-#: What is held against a scene: a body by name or id, or a shape with its pose.
-Subject = Union[BodyName, tuple[geometry.Shape, geometry.Pose]]
+#: What is held against a scene: a body by name or id, a shape with its pose, or :func:`changed_since` and its like.
+Subject = Union[BodyName, tuple[geometry.Shape, geometry.Pose], query.Subject]
+
+
+def changed_since(revision: int) -> query.Subject:
+    """Every pair of bodies that changed after a revision: a side of it, or what the scene says of the pair.
+
+    As far back as the daemon keeps revisions; :class:`RevisionGone` names the oldest.
+    """
+    return query.Subject(changed_since=query.ChangedSince(revision=revision))
 
 
 class Client:
@@ -510,6 +520,31 @@ class Scene:
             context.max_pairs = most
         return context
 
+    def watch_contacts(
+        self,
+        *,
+        want: str = "verdict",
+        margin: Optional[float] = None,
+        stays: bool = False,
+        solver: str = "default",
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> ContactWatch:
+        """Which contacts begin and end, revision by revision, for as long as it is iterated.
+
+        The first step has every contact as begun. With a `margin` a pair is in contact when it is proved to be within it
+        (a scene's entry for the pair replaces it), without when it is proved to touch. `stays` lists what stays, too.
+        `timeout` ends the watch after so many seconds; None: never.
+        """
+        touching, within = contact.CONTACT_THRESHOLD_TOUCHING, contact.CONTACT_THRESHOLD_MARGIN
+        request = contact.WatchContactsRequest(
+            context=self._context(want, margin or 0.0, None, solver, at_least),
+            threshold=touching if margin is None else within,
+            stays=stays,
+        )
+        with translated():
+            return ContactWatch(self._client._queries.WatchContacts(request, timeout=timeout))
+
     def _context(
         self, want: str, margin: float, cut_off: Optional[float], solver: str, at_least: Optional[int]
     ) -> query.Context:
@@ -576,7 +611,9 @@ def _subjects(subjects: Sequence[Subject]) -> list[query.Subject]:
         return [query.Subject(all_pairs=query.AllPairs())]
     messages = []
     for subject in subjects:
-        if isinstance(subject, tuple):
+        if isinstance(subject, query.Subject):
+            messages.append(subject)
+        elif isinstance(subject, tuple):
             shape, pose = subject
             messages.append(query.Subject(shape=query.PlacedShape(shape=shape, pose=pose or make_pose())))
         else:

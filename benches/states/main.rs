@@ -1,12 +1,15 @@
 //! States of a robot checked in a second: in process, through gRPC, and by the usual checker in the same run.
 //!
 //! `cargo bench --bench states`, after `benches/peers/setup` for the comparison. The workload is the UR5 of `tests/data`:
-//! 400 states in 21 scenes. All run in turn, round after round, each on one core (`taskset -c 0 cargo bench ...` keeps the
-//! daemon and its client on the same one); a figure is the median over the rounds, a
-//! ratio the median of the rounds' ratios, so that a machine that slows down slows both sides.
+//! 400 states in 21 scenes; and those of every third scene again among 10 000 more bodies (`crowd.rs`). All run in turn,
+//! round after round, each on one core (`taskset -c 0 cargo bench ...` keeps the daemon and its client on the same one); a
+//! figure is the median over the rounds, a ratio the median of the rounds' ratios, so that a machine that slows down
+//! slows both sides. Answers among more bodies are first held against those of all pairs.
 
-#[path = "../tests/query/workload.rs"]
+#[path = "../../tests/query/workload.rs"]
 mod workload;
+
+mod crowd;
 
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
@@ -16,7 +19,7 @@ use std::time::Instant;
 
 use clearance::app::{Daemon, GrpcSettings, Settings};
 use clearance::geometry::Pose;
-use clearance::query::{CheckStates, Context, Mode, Prepared, Wants};
+use clearance::query::{CheckStates, Context, Mode, Prepared, Verdict, Wants};
 use clearance::robot::{LinkOptions, MeshUse, ModelOptions, mesh_files};
 use clearance::scene::{NewBody, Snapshot};
 use clearance::service::{RobotDescription, Target};
@@ -31,6 +34,10 @@ const LEAST_TIME: f64 = 0.3;
 const VERDICT: Wants = Wants::VERDICT;
 /// As the usual checker: the least signed distance over all pairs, penetration included.
 const DISTANCE: Wants = Wants { distance: true, depth: true, ..Wants::VERDICT };
+
+/// How many states a request holds.
+const IN_PROCESS: [(&str, usize); 2] =
+    [("in process, a scene's states a request", usize::MAX), ("in process, a state a request", 1)];
 
 /// The states of one scene, joined to one request.
 struct Batch {
@@ -49,21 +56,39 @@ fn main() {
             Batch { snapshot: Arc::clone(snapshot), positions: own.flat_map(|(_, q, _)| q.clone()).collect() }
         })
         .collect();
+    let crowd = crowd::scenes(&robot, &scenes, &states);
+    hold_against_all_pairs(&crowd);
+    let crowded: Vec<Batch> = (crowd.iter())
+        .map(|scene| Batch {
+            snapshot: Arc::clone(&scene.snapshot),
+            positions: scene.states.iter().flat_map(|(q, _)| q.clone()).collect(),
+        })
+        .collect();
     let grpc = Grpc::start(&scenes);
     let mut peer = UsualChecker::start();
+    let mut peer_in_a_crowd = UsualChecker::start_in_a_crowd(&crowd);
     let mut table = Table::default();
     for _ in 0..ROUNDS {
         let usual = peer.as_mut().map(UsualChecker::pass);
         for (question, wants) in [("verdict", VERDICT), ("distance", DISTANCE)] {
-            let usual = usual.as_ref().map(|answer| answer[question].as_f64().expect("the peer answers with numbers"));
+            let usual = usual.as_ref().map(|answer| number(answer, question));
             table.note(question, "pinocchio + Coal", usual, usual);
-            for (way, size) in
-                [("in process, a scene's states a request", usize::MAX), ("in process, a state a request", 1)]
-            {
+            for (way, size) in IN_PROCESS {
                 table.note(question, way, Some(in_process(&batches, width, size, wants)), usual);
             }
             for (way, size) in [("gRPC, 1 a request", 1), ("gRPC, 64 a request", 64), ("gRPC, 1024 a request", 1024)] {
                 table.note(question, way, Some(grpc.ask(&batches, width, size, wants)), usual);
+            }
+        }
+        let usual = peer_in_a_crowd.as_mut().map(UsualChecker::pass);
+        for (question, title, wants) in
+            [("verdict", "verdict in a crowd", VERDICT), ("distance", "distance in a crowd", DISTANCE)]
+        {
+            let per_second = usual.as_ref().map(|answer| number(answer, question));
+            let way = usual.as_ref().and_then(|answer| answer[format!("{question}_way")].as_str()).unwrap_or_default();
+            table.note(title, &format!("pinocchio + Coal, {way}"), per_second, per_second);
+            for (way, size) in IN_PROCESS {
+                table.note(title, way, Some(in_process(&crowded, width, size, wants)), per_second);
             }
         }
     }
@@ -89,6 +114,33 @@ fn in_process(batches: &[Batch], width: usize, size: usize, wants: Wants) -> f64
         });
         answers.map(|answer| answer.items.len()).sum()
     })
+}
+
+/// Every answer among more bodies is that of the search through all pairs.
+fn hold_against_all_pairs(crowd: &[crowd::Crowded]) {
+    let (mut hits, mut free) = (0, 0);
+    for scene in crowd {
+        for ((positions, collides), least) in scene.states.iter().zip(&scene.distances) {
+            let context = Context { wants: DISTANCE, ..Context::default() };
+            let request =
+                CheckStates { robot: "ur5".to_owned(), positions: positions.clone(), mode: Mode::All, context };
+            let prepared = Prepared::check_states(&scene.snapshot, &request).expect("the workload is in order");
+            let answer = prepared.answer(&|| false).items.remove(0);
+            assert_eq!(answer.verdict, if *collides { Verdict::Collision } else { Verdict::Free }, "{positions:?}");
+            let nearest = answer.nearest.expect("a distance was wanted");
+            let room = 1e-9 * least.abs().max(1e-3);
+            assert!(
+                nearest.bracket.lower - room <= *least && *least <= nearest.bracket.upper + room,
+                "{least} {nearest:?}"
+            );
+            *(if *collides { &mut hits } else { &mut free }) += 1;
+        }
+    }
+    eprintln!("{hits} states in collision and {free} free among {} more bodies answered as by all pairs", crowd::EXTRA);
+}
+
+fn number(answer: &serde_json::Value, question: &str) -> f64 {
+    answer[question].as_f64().expect("the peer answers with numbers")
 }
 
 /// A daemon with one thread for questions, on loopback in this process, and a client of it.
@@ -181,20 +233,34 @@ struct UsualChecker {
 }
 
 impl UsualChecker {
+    /// The workload as it is.
     fn start() -> Option<Self> {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let python = root.join("target/peers/bin/python");
-        if !python.exists() {
-            eprintln!("no comparison: benches/peers/setup installs pinocchio and Coal");
+        let python = root().join("target/peers/bin/python");
+        let script = root().join("benches/peers/usual_checker.py");
+        Self::start_program(&python, &[&script, &root().join("tests/data/robot-ur5"), Path::new("ur5")])
+    }
+
+    /// Among more bodies.
+    fn start_in_a_crowd(crowd: &[crowd::Crowded]) -> Option<Self> {
+        let folder = root().join("target/peers/comparison");
+        let (program, scenes) = (folder.join("crowded_checker"), folder.join("crowded_scenes.txt"));
+        if program.exists() {
+            std::fs::write(&scenes, crowd::text(crowd)).expect("the folder of the program takes a file");
+        }
+        Self::start_program(&program, &[&root().join("tests/data/robot-ur5"), Path::new("ur5"), &scenes])
+    }
+
+    fn start_program(program: &Path, arguments: &[&Path]) -> Option<Self> {
+        if !program.exists() {
+            eprintln!("no comparison: benches/peers/setup makes {}", program.display());
             return None;
         }
-        let mut process = Command::new(python)
-            .arg(root.join("benches/peers/usual_checker.py"))
-            .args([root.join("tests/data/robot-ur5").as_os_str(), "ur5".as_ref()])
+        let mut process = Command::new(program)
+            .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
-            .expect("the peer's Python starts");
+            .expect("the peer starts");
         let to = process.stdin.take().expect("stdin is piped");
         let mut from = BufReader::new(process.stdout.take().expect("stdout is piped"));
         let mut ready = String::new();
@@ -212,6 +278,10 @@ impl UsualChecker {
     }
 }
 
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
 /// Figures of all rounds, in the order they first came.
 #[derive(Default)]
 struct Table {
@@ -220,16 +290,16 @@ struct Table {
 
 struct Row {
     question: &'static str,
-    way: &'static str,
+    way: String,
     per_second: Vec<f64>,
     ratios: Vec<f64>,
 }
 
 impl Table {
-    fn note(&mut self, question: &'static str, way: &'static str, per_second: Option<f64>, usual: Option<f64>) {
+    fn note(&mut self, question: &'static str, way: &str, per_second: Option<f64>, usual: Option<f64>) {
         let Some(per_second) = per_second else { return };
         let place = self.rows.iter().position(|r| r.question == question && r.way == way).unwrap_or_else(|| {
-            self.rows.push(Row { question, way, per_second: Vec::new(), ratios: Vec::new() });
+            self.rows.push(Row { question, way: way.to_owned(), per_second: Vec::new(), ratios: Vec::new() });
             self.rows.len() - 1
         });
         self.rows[place].per_second.push(per_second);
@@ -237,10 +307,10 @@ impl Table {
     }
 
     fn print(&mut self) {
-        println!("{:<10} {:<44} {:>12} {:>10}", "question", "way", "states/s", "ratio");
+        println!("{:<20} {:<52} {:>12} {:>10}", "question", "way", "states/s", "ratio");
         for row in &mut self.rows {
             let ratio = if row.ratios.is_empty() { "-".to_owned() } else { format!("{:.2}", median(&mut row.ratios)) };
-            println!("{:<10} {:<44} {:>12.0} {ratio:>10}", row.question, row.way, median(&mut row.per_second));
+            println!("{:<20} {:<52} {:>12.0} {ratio:>10}", row.question, row.way, median(&mut row.per_second));
         }
     }
 }
