@@ -437,12 +437,7 @@ fn what_cannot_be_asked_is_named() {
         change(&mut question);
         Rays::new(snapshot, &question).err().map(refused).unwrap_or_default()
     };
-    assert_eq!(
-        bad(&|q| {
-            q.origins.pop();
-        }),
-        "origins: 5 numbers are no whole number of points of 3 each"
-    );
+    assert_eq!(bad(&|q| q.origins.truncate(5)), "origins: 5 numbers are no whole number of points of 3 each");
     assert_eq!(bad(&|q| q.directions.push(0.0)), "directions: has 7 numbers, for the 2 rays of origins");
     assert_eq!(bad(&|q| q.lengths.clear()), "lengths: has 0 numbers; one for all, or one for each of the 2 rays");
     assert_eq!(
