@@ -82,6 +82,11 @@ impl BoundingVolume for Aabb {
     }
 
     #[inline(always)]
+    fn nothing() -> BoxBound {
+        BoxBound([f32::INFINITY; 8])
+    }
+
+    #[inline(always)]
     fn union(a: &BoxBound, b: &BoxBound) -> BoxBound {
         BoxBound(f32x8::from(a.0).fast_min(f32x8::from(b.0)).to_array())
     }

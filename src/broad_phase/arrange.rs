@@ -47,6 +47,8 @@ struct Part<V: BoundingVolume> {
 pub(super) struct Arranger<'a, V: BoundingVolume> {
     pub(super) stock: Stock<'a, V>,
     pub(super) places: &'a mut Places,
+    /// Where the leaf of each slot is noted; nowhere but in `places` if there is no list.
+    pub(super) homes: Option<&'a mut Vec<u32>>,
 }
 
 /// Inner levels that `count` things need, with room for uneven splits.
@@ -109,7 +111,10 @@ impl<V: BoundingVolume> Arranger<'_, V> {
             Stock::Entries(entries) => {
                 let id = self.places.new_node();
                 let own: ArrayVec<Entry<V>, LANES> = items.iter().map(|item| entries[item.index as usize]).collect();
-                own.iter().for_each(|entry| self.places.set_leaf(entry.slot, id));
+                match self.homes.as_deref_mut() {
+                    Some(homes) => own.iter().for_each(|entry| homes[entry.slot as usize] = id),
+                    None => own.iter().for_each(|entry| self.places.set_leaf(entry.slot, id)),
+                }
                 Kid::Leaf(Arc::new(Leaf::of(id, &own)))
             }
             Stock::Nodes(nodes) => nodes[items[0].index as usize].take().expect("each node is taken once"),
@@ -156,12 +161,6 @@ fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
     items[1..].iter().fold(items[0].bound, |all, item| V::union(&all, &item.bound))
 }
 
-#[derive(Clone, Copy)]
-struct Bin<B> {
-    count: usize,
-    bound: Option<B>,
-}
-
 /// A way to divide a part: at the lower edge of a bin of an axis.
 struct Split<V: BoundingVolume> {
     price: f32,
@@ -199,30 +198,29 @@ fn split<V: BoundingVolume>(
         if !(scale.is_finite() && extent(axis) > 0.0) {
             continue;
         }
-        let mut bins = [Bin { count: 0, bound: None::<V::Bound> }; BINS];
+        let mut counts = [0_usize; BINS];
+        let mut bounds = [V::nothing(); BINS];
         for item in items.iter() {
-            let bin = &mut bins[bin_of(V::centre(&item.bound)[axis], low[axis], scale)];
-            bin.count += 1;
-            bin.bound = Some(bin.bound.map_or(item.bound, |bound| V::union(&bound, &item.bound)));
+            let bin = bin_of(V::centre(&item.bound)[axis], low[axis], scale);
+            counts[bin] += 1;
+            bounds[bin] = V::union(&bounds[bin], &item.bound);
         }
-        let mut after = [None::<V::Bound>; BINS];
-        let mut all = None::<V::Bound>;
-        for i in (1..BINS).rev() {
-            all = both::<V>(all, bins[i].bound);
-            after[i] = all;
+        let mut after = bounds;
+        for i in (1..BINS - 1).rev() {
+            after[i] = V::union(&after[i], &after[i + 1]);
         }
-        let (mut left, mut before) = (0, None::<V::Bound>);
-        for i in 1..BINS {
-            left += bins[i - 1].count;
-            before = both::<V>(before, bins[i - 1].bound);
-            let (Some(first), Some(second)) = (before, after[i]) else { continue };
+        let (mut left, mut first) = (0, V::nothing());
+        for edge in 1..BINS {
+            left += counts[edge - 1];
+            first = V::union(&first, &bounds[edge - 1]);
             let right = count - left;
-            if left.div_ceil(most) + right.div_ceil(most) > room {
+            if left == 0 || right == 0 || left.div_ceil(most) + right.div_ceil(most) > room {
                 continue;
             }
+            let second = after[edge];
             let price = V::cost(&first) * left.div_ceil(unit) as f32 + V::cost(&second) * right.div_ceil(unit) as f32;
             if best.as_ref().is_none_or(|best| price < best.price) {
-                best = Some(Split { price, axis, edge: i, left, first, second });
+                best = Some(Split { price, axis, edge, left, first, second });
             }
         }
     }
@@ -241,15 +239,9 @@ fn split<V: BoundingVolume>(
     (left, first, second)
 }
 
+#[inline(always)]
 fn bin_of(centre: f32, low: f32, scale: f32) -> usize {
     (((centre - low) * scale) as usize).min(BINS - 1)
-}
-
-fn both<V: BoundingVolume>(a: Option<V::Bound>, b: Option<V::Bound>) -> Option<V::Bound> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(V::union(&a, &b)),
-        (one, other) => one.or(other),
-    }
 }
 
 /// Cuts in two full parts where no split between bins will do: all centres equal, or too little room.

@@ -128,6 +128,9 @@ struct Search<'a, V: BoundingVolume> {
 /// floor, which would grow by nothing.
 const ENTRY_SHARE: f32 = 1.0 / 8.0;
 
+/// The same for a full leaf, which has to be divided: another node to visit, though of smaller ones.
+const DIVISION_SHARE: f32 = 3.0 / 8.0;
+
 /// Nodes a search looks at, beyond the way down. Where all boxes overlap, nothing tells the ways apart.
 const MOST_LOOKED_AT: u32 = 48;
 
@@ -154,8 +157,9 @@ impl<V: BoundingVolume> Search<'_, V> {
             }
             let way = way | (lane as u64) << shift;
             match &inner.kids[lane] {
-                Kid::Leaf(_) => {
-                    let price = price + ENTRY_SHARE * growth.after[lane];
+                Kid::Leaf(leaf) => {
+                    let share = if leaf.entries.len() == LANES { DIVISION_SHARE } else { ENTRY_SHARE };
+                    let price = price + share * growth.after[lane];
                     if price < self.best || self.best == f32::INFINITY {
                         (self.best, self.way) = (price.min(f32::MAX), way);
                     }

@@ -24,6 +24,20 @@ impl Pages {
         self.length
     }
 
+    /// All numbers at once.
+    pub(super) fn of(numbers: &[u32]) -> Self {
+        let page = |numbers: &[u32]| {
+            let mut page = [0; PAGE];
+            page[..numbers.len()].copy_from_slice(numbers);
+            Some(Arc::new(page))
+        };
+        let list = |numbers: &[u32]| {
+            let mut pages = numbers.chunks(PAGE).map(page);
+            Arc::new(std::array::from_fn(|_| pages.next().flatten()))
+        };
+        Self { lists: numbers.chunks(PAGE * PAGE).map(list).collect(), length: numbers.len() }
+    }
+
     /// Appends an element; its index is the length before.
     pub(super) fn push(&mut self, value: u32) {
         if self.length == self.lists.len() * PAGE * PAGE {
@@ -94,6 +108,9 @@ mod tests {
         for i in 0..10_000_u32 {
             before.push(i);
         }
+        let numbers: Vec<u32> = (0..10_000).collect();
+        let at_once = Pages::of(&numbers);
+        assert!((0..10_000).all(|i| at_once[i] == before[i]) && at_once.len() == before.len());
         let mut after = before.clone();
         let pages = 10_000_usize.div_ceil(PAGE);
         assert_eq!(after.shared_with(&before), pages);

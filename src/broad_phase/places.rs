@@ -73,6 +73,16 @@ impl Places {
         self.slots.set(slot, leaf);
     }
 
+    /// What is kept for each slot, to be changed as a whole.
+    pub(super) fn homes(&self) -> Vec<u32> {
+        (0..self.slots.len() as u32).map(|slot| self.slots[slot]).collect()
+    }
+
+    /// Keeps this for each slot.
+    pub(super) fn set_homes(&mut self, homes: &[u32]) {
+        self.slots = Pages::of(homes);
+    }
+
     pub(super) fn set_parent(&mut self, node: u32, parent: u32, lane: usize) {
         self.parents.set(node, parent << 3 | lane as u32);
     }

@@ -8,7 +8,6 @@
 use std::mem;
 use std::sync::Arc;
 
-use super::arrange::{Arranger, Item, Stock, roomy_levels};
 use super::maintain::{MOVE_DEBT, PLACE_DEBT};
 use super::node::{Entry, Inner, Kid, Leaf, lanes_of};
 use super::places::{Place, Places};
@@ -103,20 +102,8 @@ impl<V: BoundingVolume> DynamicTree<V> {
             free_ids(&root, &mut self.places);
         }
         self.upkeep.paid_in_full();
-        self.build_over(&entries);
-    }
-
-    /// Makes the root over entries when there is none.
-    pub(super) fn build_over(&mut self, entries: &[Entry<V>]) {
-        if entries.is_empty() {
-            return;
-        }
-        let mut items: Vec<Item<V>> =
-            (0..).zip(entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
-        let mut arranger = Arranger { stock: Stock::Entries(entries), places: &mut self.places };
-        let (root, _) = arranger.arrange(&mut items, roomy_levels(entries.len()));
-        self.places.set_root(root.id());
-        self.root = Some(root);
+        let mut homes = self.places.homes();
+        self.build_over(&entries, &mut homes);
     }
 
     /// Makes the moves and removals, and gives back the entries to be put in anew.

@@ -84,6 +84,10 @@ impl BoundingVolume for BoundingSphere {
         *bound
     }
 
+    fn nothing() -> SphereBound {
+        SphereBound { center: [0.0; 3], radius: f32::NEG_INFINITY }
+    }
+
     /// The least ball about both, unless one holds the other.
     fn union(a: &SphereBound, b: &SphereBound) -> SphereBound {
         if Self::holds(a, b) {

@@ -42,6 +42,8 @@ pub trait BoundingVolume: Copy + PartialEq + Debug {
     /// A bound as a question: whatever meets something within the bound is among the lanes that may meet it.
     fn probe_of(bound: &Self::Bound) -> Self::Probe;
 
+    /// The bound that holds nothing: joined with another it gives that other one. Only ever asked for unions.
+    fn nothing() -> Self::Bound;
     /// A bound that holds both.
     fn union(a: &Self::Bound, b: &Self::Bound) -> Self::Bound;
     /// Whether every volume within `inner` is known to be within `outer`. A bound holds itself and what it was joined of.
