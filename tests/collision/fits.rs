@@ -70,7 +70,8 @@ fn a_bar_without_the_other_is_not_inflated_and_loses_that() {
     let found = fit(&mesh, &of_hulls(&[bar]), &UNLIMITED);
     // From the far corner (0, 1) to that between the bars, (0.2, 0.2).
     holds(&found.loss, 0.68_f64.sqrt());
-    holds(&found.inflation, 0.0);
+    // All of the bar's surface is at distance zero, so the work ends before the bracket is as narrow as asked.
+    assert!(found.inflation.lower < 1e-9 && found.inflation.upper < 2e-3, "{found:?}");
 }
 
 #[test]
