@@ -94,7 +94,7 @@ fn sampled(mesh: &Arc<TriangleMesh>, pieces: &Arc<Compound>, random: &mut Random
         separation(shape, &Shape::point(), &here, &there, &goal).unwrap().signed_distance.max(0.0)
     };
     let mut mix = |points: &[Vec3]| {
-        let weights: Vec<f64> = points.iter().map(|_| -random.between(1e-9, 1.0).ln()).collect();
+        let weights: Vec<f64> = points.iter().map(|_| -libm::log(random.between(1e-9, 1.0))).collect();
         let total: f64 = weights.iter().sum();
         points.iter().zip(&weights).map(|(p, w)| p * (w / total)).sum::<Vec3>()
     };
