@@ -37,10 +37,12 @@ fn ask(name: &str, shape: &Shape, at: Vec3) {
     }
 }
 
-/// Numbers between -1 and 1 that are the same each time.
+/// Numbers between -1 and 1 that are the same each time: the finaliser of SplitMix64.
 fn noise(i: u32) -> f64 {
-    let hash = i.wrapping_mul(2_654_435_761) ^ (i >> 7).wrapping_mul(2_246_822_519);
-    f64::from(hash >> 8) / f64::from(1 << 23) - 1.0
+    let mut hash = (u64::from(i) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    hash = (hash ^ hash >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    hash = (hash ^ hash >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((hash ^ hash >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
 fn main() {

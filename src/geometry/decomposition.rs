@@ -116,9 +116,9 @@ mod tests {
         let bounds = Aabb::around(vertices.iter().copied());
         assert!(bounds.grown(1e-9).contains(&pieces.bounds()) && pieces.bounds().grown(1e-9).contains(&bounds));
         let corners = |compound: &Compound| -> Vec<Vec<Vec3>> {
-            let hull = |part: &Part| match part.shape.core() {
-                Core::Convex(hull) => hull.points().to_vec(),
-                other => panic!("{other:?}"),
+            let hull = |part: &Part| {
+                let Core::Convex(hull) = part.shape.core() else { panic!("{part:?}") };
+                hull.points().to_vec()
             };
             compound.parts().iter().map(hull).collect()
         };

@@ -16,13 +16,13 @@ const BRICK_BITS: u32 = 2;
 const SIDE: i32 = 1 << BRICK_BITS;
 
 /// Coordinates of a cell.
-pub(super) type Cell = [i32; 3];
+pub(super) type GridCell = [i32; 3];
 
 /// Cells from `low` to below `high` along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Region {
-    pub low: Cell,
-    pub high: Cell,
+    pub low: GridCell,
+    pub high: GridCell,
 }
 
 impl Region {
@@ -69,7 +69,7 @@ pub(super) struct Inner {
 }
 
 /// Brick and bit of a cell.
-pub(super) fn place(cell: Cell) -> Brick {
+pub(super) fn place(cell: GridCell) -> Brick {
     let shifted = cell.map(|c| (c + REACH) as u32);
     let code = (0..3).fold(0, |code, axis| code | spread(shifted[axis] >> BRICK_BITS) << axis);
     let [x, y, z] = shifted.map(|c| c & (SIDE as u32 - 1));
@@ -108,12 +108,12 @@ fn gather(code: u64) -> u32 {
 
 impl Brick {
     /// The cell of its bit 0.
-    pub fn origin(&self) -> Cell {
+    pub fn origin(&self) -> GridCell {
         std::array::from_fn(|axis| ((gather(self.code >> axis) << BRICK_BITS) as i32) - REACH)
     }
 
     /// The cell of a bit.
-    pub fn cell(&self, bit: u32) -> Cell {
+    pub fn cell(&self, bit: u32) -> GridCell {
         let [x, y, z] = self.origin();
         let bit = bit as i32;
         [x + bit % 4, y + bit / 4 % 4, z + bit / 16]
@@ -136,7 +136,7 @@ impl Brick {
 
     /// The bits of the cells in a region.
     fn bits_in(&self, region: &Region) -> u64 {
-        let is_in = |cell: Cell| (0..3).all(|i| region.low[i] <= cell[i] && cell[i] < region.high[i]);
+        let is_in = |cell: GridCell| (0..3).all(|i| region.low[i] <= cell[i] && cell[i] < region.high[i]);
         (0..64).filter(|&bit| is_in(self.cell(bit))).fold(0, |bits, bit| bits | 1 << bit)
     }
 }

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::octree::{self, Brick, Cell, Inner, Node, REACH, Region, place};
+use super::octree::{self, Brick, GridCell, Inner, Node, REACH, Region, place};
 use super::shape::{length, position};
 use super::tolerance::LARGEST_LENGTH;
 use super::{Aabb, InvalidShape, Vec3};
@@ -217,7 +217,7 @@ impl Voxels {
     }
 
     fn around(&self, region: &Region) -> Aabb {
-        let corner = |cell: Cell| Vec3::from(cell.map(|c| self.edge(c)));
+        let corner = |cell: GridCell| Vec3::from(cell.map(|c| self.edge(c)));
         Aabb { min: corner(region.low), max: corner(region.high) }
     }
 }

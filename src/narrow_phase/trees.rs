@@ -167,7 +167,7 @@ pub(super) enum AnyLeaf {
     /// The number of a column.
     Column(u32),
     /// A cell and its number.
-    Cell([i32; 3], u32),
+    Voxel([i32; 3], u32),
 }
 
 impl<'a> Growth<'a> {
@@ -290,7 +290,7 @@ impl<'a> Tree<'a> for Growth<'a> {
             },
             (Self::Map(..), AnyNode::Cells(cells)) => match (cells.halves(), cells.first()) {
                 (Some(halves), _) => Inside::Children(halves.map(AnyNode::Cells)),
-                (None, (cell, number)) => Inside::Leaf(AnyLeaf::Cell(cell, number)),
+                (None, (cell, number)) => Inside::Leaf(AnyLeaf::Voxel(cell, number)),
             },
             (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
@@ -300,7 +300,7 @@ impl<'a> Tree<'a> for Growth<'a> {
         match (self, leaf) {
             (Self::Branches(tree), AnyLeaf::Branch(leaf)) => tree.number(leaf),
             (Self::Cloud(cloud), AnyLeaf::Point(place)) => Some(cloud.number(place)),
-            (Self::Field(_), AnyLeaf::Column(number)) | (Self::Map(..), AnyLeaf::Cell(_, number)) => Some(number),
+            (Self::Field(_), AnyLeaf::Column(number)) | (Self::Map(..), AnyLeaf::Voxel(_, number)) => Some(number),
             (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }
@@ -317,7 +317,7 @@ impl<'a> Tree<'a> for Growth<'a> {
             (Self::Branches(tree), AnyLeaf::Branch(leaf)) => tree.core(leaf),
             (Self::Cloud(cloud), AnyLeaf::Point(place)) => Some(Core::Segment([cloud.at(place); 2])),
             (Self::Field(field), AnyLeaf::Column(number)) => Some(Core::Column(field.column(number))),
-            (Self::Map(map, _), AnyLeaf::Cell(cell, _)) => Some(Core::Block(map.box_of(cell))),
+            (Self::Map(map, _), AnyLeaf::Voxel(cell, _)) => Some(Core::Block(map.box_of(cell))),
             (Self::Branches(_) | Self::Cloud(_) | Self::Field(_) | Self::Map(..), _) => unreachable!("{ANOTHERS}"),
         }
     }

@@ -70,7 +70,8 @@ fn a_bar_without_the_other_is_not_inflated_and_loses_that() {
     let found = fit(&mesh, &of_hulls(&[bar]), &UNLIMITED);
     // From the far corner (0, 1) to that between the bars, (0.2, 0.2).
     holds(&found.loss, 0.68_f64.sqrt());
-    holds(&found.inflation, 0.0);
+    // All of the bar's surface is at distance zero, so the work ends before the bracket is as narrow as asked.
+    assert!(found.inflation.lower < 1e-9 && found.inflation.upper < 2e-3, "{found:?}");
 }
 
 #[test]
@@ -93,7 +94,7 @@ fn sampled(mesh: &Arc<TriangleMesh>, pieces: &Arc<Compound>, random: &mut Random
         separation(shape, &Shape::point(), &here, &there, &goal).unwrap().signed_distance.max(0.0)
     };
     let mut mix = |points: &[Vec3]| {
-        let weights: Vec<f64> = points.iter().map(|_| -random.between(1e-9, 1.0).ln()).collect();
+        let weights: Vec<f64> = points.iter().map(|_| -libm::log(random.between(1e-9, 1.0))).collect();
         let total: f64 = weights.iter().sum();
         points.iter().zip(&weights).map(|(p, w)| p * (w / total)).sum::<Vec3>()
     };

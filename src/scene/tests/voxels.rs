@@ -17,10 +17,9 @@ fn clear(body: &str, min: [f64; 3], max: [f64; 3]) -> Edit {
 }
 
 fn cells(snapshot: &Snapshot, body: &str) -> usize {
-    match snapshot.body_named(body).unwrap().shape.core() {
-        Core::Voxels(map) => map.len(),
-        other => panic!("{other:?}"),
-    }
+    let body = snapshot.body_named(body).unwrap();
+    let Core::Voxels(map) = body.shape.core() else { panic!("{body:?}") };
+    map.len()
 }
 
 #[test]
