@@ -40,12 +40,13 @@ impl Seen {
     fn look(&mut self, edit: &Edit, before: &Model, after: &Model, bases: &mut BTreeMap<String, Pose>) {
         let body_of = |model: &Model, id: u64| model.bodies.iter().find(|body| body.id == id).cloned();
         let ids: BTreeSet<u64> = before.bodies.iter().chain(&after.bodies).map(|body| body.id).collect();
-        let replaced = match edit {
-            Edit::ReplaceShape { body: BodyRef::Id(id), .. } => Some(id.0),
-            Edit::ReplaceShape { body: BodyRef::Name(name), .. } => {
-                before.bodies.iter().find(|body| body.name == *name).map(|body| body.id)
+        let replaced = if let Edit::ReplaceShape { body, .. } = edit {
+            match body {
+                BodyRef::Id(id) => Some(id.0),
+                BodyRef::Name(name) => before.bodies.iter().find(|body| body.name == *name).map(|body| body.id),
             }
-            _ => None,
+        } else {
+            None
         };
         for id in ids {
             let mut kinds = of_body(body_of(before, id), body_of(after, id));
@@ -56,17 +57,16 @@ impl Seen {
                 *self.bodies.entry(id).or_default() |= kinds;
             }
         }
-        let robot = match edit {
-            Edit::AddRobot { name, base, .. } => {
-                bases.insert(name.clone(), *base);
-                Some((name, ChangeKinds::ADDED))
-            }
-            Edit::RemoveRobot { robot } => Some((robot, ChangeKinds::REMOVED)),
-            Edit::MoveRobot { robot, base } => {
-                let moved = bases.insert(robot.clone(), *base) != Some(*base);
-                moved.then_some((robot, ChangeKinds::MOVED))
-            }
-            _ => None,
+        let robot = if let Edit::AddRobot { name, base, .. } = edit {
+            bases.insert(name.clone(), *base);
+            Some((name, ChangeKinds::ADDED))
+        } else if let Edit::RemoveRobot { robot } = edit {
+            Some((robot, ChangeKinds::REMOVED))
+        } else if let Edit::MoveRobot { robot, base } = edit {
+            let moved = bases.insert(robot.clone(), *base) != Some(*base);
+            moved.then_some((robot, ChangeKinds::MOVED))
+        } else {
+            None
         };
         if let Some((name, kinds)) = robot {
             *self.robots.entry(name.clone()).or_default() |= kinds;
