@@ -13,7 +13,7 @@ use crate::geometry::Aabb;
 
 /// Sides are cut to this, metres, where costs are taken, so that no cost overflows. Order among larger boxes is lost,
 /// not correctness.
-const LONGEST_SIDE: f32 = 1e18;
+pub(super) const LONGEST_SIDE: f32 = 1e18;
 
 /// The part of a number that [`down`] takes off before rounding to nearest, a little more than half a unit in the last
 /// place.
@@ -47,7 +47,7 @@ fn rounded(aabb: &Aabb) -> [f32; 6] {
 }
 
 #[inline(always)]
-fn price(x: f32, y: f32, z: f32) -> f32 {
+pub(super) fn price(x: f32, y: f32, z: f32) -> f32 {
     let sum = x + y + z;
     x * y + y * z + z * x + sum * sum * (1.0 / 64.0)
 }

@@ -11,12 +11,13 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
 use super::{DynamicTree, ProxyId};
-use crate::geometry::{Aabb, BoxCast, Vec3};
+use crate::geometry::{Aabb, BoxCast, Mat3, OrientedBox, Vec3};
 
 mod churn;
 mod hard;
-mod spheres;
+mod turned;
 mod versions;
+mod volumes;
 
 #[derive(Clone, Debug)]
 enum Command {
@@ -330,6 +331,23 @@ impl Random {
 
     pub(super) fn vector(&mut self, side: f64) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next()) * side
+    }
+
+    /// A right-handed frame turned at random, orthonormal to a few roundings.
+    pub(super) fn frame(&mut self) -> Mat3 {
+        let mut direction = || self.vector(2.0) - Vec3::repeat(1.0);
+        let first = direction().normalize();
+        let across = direction();
+        let once = (across - first * first.dot(&across)).normalize();
+        let second = (once - first * first.dot(&once)).normalize();
+        Mat3::from_columns(&[first, second, first.cross(&second)])
+    }
+
+    /// A box turned at random about `center`, its half extents up to `longest`: often a needle, a plate, or a point.
+    pub(super) fn turned(&mut self, center: Vec3, longest: f64) -> OrientedBox {
+        let mut half = || [1.0, 1.0, 0.01, 0.0][self.below(4)] * longest * self.next();
+        let half_extents = Vec3::new(half(), half(), half());
+        OrientedBox { center, axes: self.frame(), half_extents }
     }
 
     pub(super) fn below(&mut self, count: usize) -> usize {

@@ -4,7 +4,7 @@
 //! holds it and is what nodes keep and compare. *Lanes* are the bounds of the eight children of a node, laid out so that
 //! one question is held against all eight at once. A further volume is three types and the functions below; everything
 //! else (insertion, splits, moves, building, maintenance, traversals, health) is written once over this trait.
-//! `sphere.rs` is the shortest example.
+//! `sphere.rs` is the shortest example; `kdop.rs` and `obb.rs` compare eight at once.
 
 use std::fmt::Debug;
 
@@ -35,7 +35,8 @@ pub trait BoundingVolume: Copy + PartialEq + Debug {
 
     /// A bound that holds this volume.
     fn bound(&self) -> Self::Bound;
-    /// Whether the closed volumes have a point in common: this decides what is reported.
+    /// Whether the closed volumes have a point in common: this decides what is reported. A volume for which that is not
+    /// decided exactly says what more it reports; it leaves nothing out, and the order of the two does not matter.
     fn overlaps(&self, other: &Self) -> bool;
     /// The volume as a question.
     fn probe(&self) -> Self::Probe;
