@@ -2,24 +2,25 @@
 //!
 //! Top down: a node's things are split in two again and again, the dearest part first, until it has eight children (as
 //! Wald, Benthin, Boulos, "Getting rid of packets", 2008, collapse binary trees). A split is chosen among those between
-//! sixteen bins of the centres (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), its price
-//! taken in whole leaves, so that leaves come out full. The depth is bounded: a split that would leave a part with more
-//! things than its levels can hold is not made.
+//! eight bins of the centres along the axis on which they spread most (Wald, "On fast construction of SAH-based bounding
+//! volume hierarchies", 2007), its price taken in whole leaves, so that leaves come out full. Very many things are parted
+//! by the cells of a grid first (`grid.rs`). More bins, or all three axes, take longer and give no better trees. The depth
+//! is bounded: a split that would leave a part with more things than its levels can hold is not made.
 
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
+use super::grid;
 use super::node::{Entry, Inner, Kid, Leaf};
 use super::places::Places;
 use super::volume::{BoundingVolume, LANES};
 
 /// Bins along an axis.
-const BINS: usize = 16;
+const BINS: usize = 8;
 
-/// Up to so many things the best split of all three axes is sought, above it of the axis along which they spread most:
-/// high up in the tree splits hardly differ.
-const ALL_AXES: usize = 512;
+/// More things than these are parted by a grid: fewer are not worth looking at 64 cells.
+const GRIDDED: usize = 256;
 
 /// What is to be grouped.
 pub(super) enum Stock<'a, V: BoundingVolume> {
@@ -37,18 +38,22 @@ pub(super) struct Item<V: BoundingVolume> {
 }
 
 /// A part of the items.
-struct Part<V: BoundingVolume> {
-    start: usize,
-    end: usize,
-    bound: V::Bound,
+pub(super) struct Part<V: BoundingVolume> {
+    pub(super) start: usize,
+    pub(super) end: usize,
+    pub(super) bound: V::Bound,
 }
 
 /// Makes nodes over a stock.
 pub(super) struct Arranger<'a, V: BoundingVolume> {
-    pub(super) stock: Stock<'a, V>,
-    pub(super) places: &'a mut Places,
+    stock: Stock<'a, V>,
+    places: &'a mut Places,
     /// Where the leaf of each slot is noted; nowhere but in `places` if there is no list.
-    pub(super) homes: Option<&'a mut Vec<u32>>,
+    homes: Option<&'a mut Vec<u32>>,
+    /// Memory for items on their way to their parts.
+    spare: Vec<Item<V>>,
+    /// Memory for the cells that items are in.
+    numbers: Vec<u8>,
 }
 
 /// Inner levels that `count` things need, with room for uneven splits.
@@ -56,7 +61,11 @@ pub(super) fn roomy_levels(count: usize) -> u32 {
     (count.max(1) as u64).ilog(LANES as u64) + 3
 }
 
-impl<V: BoundingVolume> Arranger<'_, V> {
+impl<'a, V: BoundingVolume> Arranger<'a, V> {
+    pub(super) fn new(stock: Stock<'a, V>, places: &'a mut Places, homes: Option<&'a mut Vec<u32>>) -> Self {
+        Self { stock, places, homes, spare: Vec::new(), numbers: Vec::new() }
+    }
+
     /// Things of the stock that one child without children of its own holds.
     fn unit(&self) -> usize {
         match self.stock {
@@ -78,8 +87,14 @@ impl<V: BoundingVolume> Arranger<'_, V> {
         }
         let unit = self.unit();
         let most = unit.saturating_mul(LANES.saturating_pow(levels.saturating_sub(1)));
-        let mut parts: ArrayVec<Part<V>, LANES> = ArrayVec::new();
-        parts.push(Part { start: 0, end: items.len(), bound: *bound });
+        let gridded = (items.len() > GRIDDED)
+            .then(|| grid::parts(items, &mut self.spare, &mut self.numbers, bound, unit, most))
+            .flatten();
+        let mut parts: ArrayVec<Part<V>, LANES> = gridded.unwrap_or_else(|| {
+            let mut parts = ArrayVec::new();
+            parts.push(Part { start: 0, end: items.len(), bound: *bound });
+            parts
+        });
         while parts.len() < LANES {
             // A part that is too large for a child goes first; else the one that is dearest to visit.
             let price = |part: &Part<V>| match part.end - part.start {
@@ -91,7 +106,7 @@ impl<V: BoundingVolume> Arranger<'_, V> {
             let taken: usize = parts.iter().map(|part| (part.end - part.start).div_ceil(most)).sum();
             let Part { start, end, .. } = parts[worst];
             let room = LANES - (taken - (end - start).div_ceil(most));
-            let (left, first, second) = split::<V>(&mut items[start..end], unit, most, room);
+            let (left, first, second) = split::<V>(&mut items[start..end], &mut self.spare, unit, most, room);
             parts[worst] = Part { start, end: start + left, bound: first };
             parts.push(Part { start: start + left, end, bound: second });
         }
@@ -161,10 +176,9 @@ fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
     items[1..].iter().fold(items[0].bound, |all, item| V::union(&all, &item.bound))
 }
 
-/// A way to divide a part: at the lower edge of a bin of an axis.
+/// A way to divide a part: at the lower edge of a bin.
 struct Split<V: BoundingVolume> {
     price: f32,
-    axis: usize,
     edge: usize,
     /// Things on the first side.
     left: usize,
@@ -176,6 +190,7 @@ struct Split<V: BoundingVolume> {
 /// at most `most` things, together, stays within `room`.
 fn split<V: BoundingVolume>(
     items: &mut [Item<V>],
+    spare: &mut Vec<Item<V>>,
     unit: usize,
     most: usize,
     room: usize,
@@ -191,57 +206,53 @@ fn split<V: BoundingVolume>(
     }
     let extent = |axis: usize| high[axis] / 2.0 - low[axis] / 2.0;
     let longest = (1..3).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best });
-    let axes = if count > ALL_AXES { longest..longest + 1 } else { 0..3 };
+    let scale = (BINS as f32 * 0.499_999) / extent(longest);
+    if !(scale.is_finite() && extent(longest) > 0.0) {
+        return cut::<V>(items, unit, most, longest);
+    }
+    let bin_of = |item: &Item<V>| {
+        let centre = V::centre_along(&item.bound, longest);
+        (((centre - low[longest]) * scale) as usize).min(BINS - 1)
+    };
+    let mut counts = [0_usize; BINS];
+    let mut bounds = [V::nothing(); BINS];
+    for item in items.iter() {
+        let bin = bin_of(item);
+        counts[bin] += 1;
+        bounds[bin] = V::union(&bounds[bin], &item.bound);
+    }
+    let mut after = bounds;
+    for i in (1..BINS - 1).rev() {
+        after[i] = V::union(&after[i], &after[i + 1]);
+    }
     let mut best: Option<Split<V>> = None;
-    for axis in axes {
-        let scale = (BINS as f32 * 0.499_999) / extent(axis);
-        if !(scale.is_finite() && extent(axis) > 0.0) {
+    let (mut left, mut first) = (0, V::nothing());
+    for edge in 1..BINS {
+        left += counts[edge - 1];
+        first = V::union(&first, &bounds[edge - 1]);
+        let right = count - left;
+        if left == 0 || right == 0 || left.div_ceil(most) + right.div_ceil(most) > room {
             continue;
         }
-        let mut counts = [0_usize; BINS];
-        let mut bounds = [V::nothing(); BINS];
-        for item in items.iter() {
-            let bin = bin_of(V::centre(&item.bound)[axis], low[axis], scale);
-            counts[bin] += 1;
-            bounds[bin] = V::union(&bounds[bin], &item.bound);
-        }
-        let mut after = bounds;
-        for i in (1..BINS - 1).rev() {
-            after[i] = V::union(&after[i], &after[i + 1]);
-        }
-        let (mut left, mut first) = (0, V::nothing());
-        for edge in 1..BINS {
-            left += counts[edge - 1];
-            first = V::union(&first, &bounds[edge - 1]);
-            let right = count - left;
-            if left == 0 || right == 0 || left.div_ceil(most) + right.div_ceil(most) > room {
-                continue;
-            }
-            let second = after[edge];
-            let price = V::cost(&first) * left.div_ceil(unit) as f32 + V::cost(&second) * right.div_ceil(unit) as f32;
-            if best.as_ref().is_none_or(|best| price < best.price) {
-                best = Some(Split { price, axis, edge, left, first, second });
-            }
+        let second = after[edge];
+        let price = V::cost(&first) * left.div_ceil(unit) as f32 + V::cost(&second) * right.div_ceil(unit) as f32;
+        if best.as_ref().is_none_or(|best| price < best.price) {
+            best = Some(Split { price, edge, left, first, second });
         }
     }
-    let Some(Split { axis, edge, left, first, second, .. }) = best else { return cut::<V>(items, unit, most, longest) };
-    let scale = (BINS as f32 * 0.499_999) / extent(axis);
-    let (mut front, mut back) = (0, count);
-    while front < back {
-        if bin_of(V::centre(&items[front].bound)[axis], low[axis], scale) < edge {
-            front += 1;
-        } else {
-            back -= 1;
-            items.swap(front, back);
-        }
+    let Some(Split { edge, left, first, second, .. }) = best else { return cut::<V>(items, unit, most, longest) };
+    // Through a copy, and without a branch that nobody can predict.
+    spare.clear();
+    spare.extend_from_slice(items);
+    let (mut front, mut back) = (0, left);
+    for item in spare.iter() {
+        let is_first = bin_of(item) < edge;
+        items[if is_first { front } else { back }] = *item;
+        front += usize::from(is_first);
+        back += usize::from(!is_first);
     }
     debug_assert_eq!(front, left, "items fall into the same bins again");
     (left, first, second)
-}
-
-#[inline(always)]
-fn bin_of(centre: f32, low: f32, scale: f32) -> usize {
-    (((centre - low) * scale) as usize).min(BINS - 1)
 }
 
 /// Cuts in two full parts where no split between bins will do: all centres equal, or too little room.

@@ -27,7 +27,7 @@ impl<V: BoundingVolume> DynamicTree<V> {
             let mut items: Vec<Item<V>> =
                 (0..).zip(entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
             let stock = Stock::Entries(entries);
-            let mut arranger = Arranger { stock, places: &mut self.places, homes: Some(&mut *homes) };
+            let mut arranger = Arranger::new(stock, &mut self.places, Some(&mut *homes));
             let (root, _) = arranger.arrange(&mut items, roomy_levels(entries.len()));
             self.places.set_root(root.id());
             self.root = Some(root);

@@ -123,7 +123,7 @@ fn regroup_entries<V: BoundingVolume>(inner: &mut Inner<V>, places: &mut Places)
     inner.kids.iter().for_each(|kid| free_ids(kid, places));
     let mut items: Vec<Item<V>> =
         (0..).zip(&entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
-    let mut arranger = Arranger { stock: Stock::Entries(&entries), places, homes: None };
+    let mut arranger = Arranger::new(Stock::Entries(&entries), places, None);
     let (kid, _) = arranger.arrange(&mut items, inner.level);
     replace_kids(inner, kid, places);
     entries.len()
@@ -157,7 +157,7 @@ fn regroup_nodes<V: BoundingVolume>(inner: &mut Inner<V>, places: &mut Places) -
         }
     }
     let count = nodes.len();
-    let mut arranger = Arranger { stock: Stock::Nodes(&mut nodes), places, homes: None };
+    let mut arranger = Arranger::new(Stock::Nodes(&mut nodes), places, None);
     let (kid, _) = arranger.arrange(&mut items, NODE_LEVELS);
     replace_kids(inner, kid, places);
     count
