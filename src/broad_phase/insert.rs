@@ -1,8 +1,9 @@
 //! How an entry comes in: down to the leaf that it makes least dearer, and nodes that overflow are divided.
 //!
-//! A full leaf's nine entries are divided in two by the best split there is; a full node does the same with its nine
-//! children. So the tree grows at its root, like a B-tree (Bayer, McCreight, 1972), and no order of insertions makes a
-//! chain of it. Levels may have gaps, which a division uses before it asks the parent for room.
+//! A full leaf's nine entries are divided in two by the best split there is. If their parent is full too, the two halves
+//! get a node of their own as long as the tree may get taller there; else the parent's nine children are divided, and so
+//! on upward, like in a B-tree (Bayer, McCreight, 1972). So divisions hardly ever reach the nodes near the root, whose
+//! halves would overlap much, and still no order of insertions makes a chain of it.
 
 use std::sync::Arc;
 
@@ -20,6 +21,7 @@ const LEAST_SIDE: usize = 3;
 impl<V: BoundingVolume> DynamicTree<V> {
     /// Puts an entry into the tree.
     pub(super) fn place(&mut self, entry: &Entry<V>) {
+        let tallest = tallest(self.count);
         let places = &mut self.places;
         let Some(root) = &mut self.root else {
             let id = places.new_node();
@@ -30,7 +32,7 @@ impl<V: BoundingVolume> DynamicTree<V> {
         };
         let bound = entry.volume.bound();
         let way = Search::for_leaf(root, &bound);
-        let Some(sibling) = place_in(root, entry, &bound, way, places) else { return };
+        let Some(sibling) = place_in(root, entry, &bound, way, tallest, places) else { return };
         let mut above = Inner::empty(places.new_node(), root.level().max(sibling.level()) + 1);
         places.set_root(above.id);
         let Some(old) = self.root.take() else { return };
@@ -40,6 +42,12 @@ impl<V: BoundingVolume> DynamicTree<V> {
         above.arranged = above.spread();
         self.root = Some(Kid::Inner(Arc::new(above)));
     }
+}
+
+/// The highest level that a root of a tree of so many entries may get by anything but a division: half more than the
+/// least one, and two.
+pub(super) fn tallest(count: usize) -> u32 {
+    3 * (count.max(1) as u64).ilog(LANES as u64) / 2 + 2
 }
 
 /// Adds a child to a node that has room.
@@ -56,6 +64,7 @@ fn place_in<V: BoundingVolume>(
     entry: &Entry<V>,
     bound: &V::Bound,
     way: u64,
+    tallest: u32,
     places: &mut Places,
 ) -> Option<Kid<V>> {
     match kid {
@@ -73,7 +82,8 @@ fn place_in<V: BoundingVolume>(
             let inner = Arc::make_mut(inner);
             let lane = (way & 7) as usize;
             let before = V::get(&inner.lanes, lane);
-            let sibling = place_in(&mut inner.kids[lane], entry, bound, way >> 3, places);
+            let sibling = place_in(&mut inner.kids[lane], entry, bound, way >> 3, tallest.saturating_sub(1), places);
+            inner.level = inner.level.max(inner.kids[lane].level() + 1);
             let Some(sibling) = sibling else {
                 let after = V::union(&before, bound);
                 if after != before {
@@ -90,8 +100,9 @@ fn place_in<V: BoundingVolume>(
                 return None;
             }
             let level = inner.kids[lane].level().max(sibling.level()) + 1;
-            if level < inner.level {
-                // There is room between this node and the child: the two halves get a node of their own.
+            if level < tallest {
+                // The two halves get a node of their own: that costs a visit here, a division would spoil nodes above.
+                inner.level = inner.level.max(level + 1);
                 let mut between = Inner::empty(places.new_node(), level);
                 places.set_parent(between.id, inner.id, lane);
                 let both = Kid::Inner(Arc::new(Inner::empty(between.id, level)));
@@ -128,9 +139,6 @@ struct Search<'a, V: BoundingVolume> {
 /// floor, which would grow by nothing.
 const ENTRY_SHARE: f32 = 1.0 / 8.0;
 
-/// The same for a full leaf, which has to be divided: another node to visit, though of smaller ones.
-const DIVISION_SHARE: f32 = 3.0 / 8.0;
-
 /// Nodes a search looks at, beyond the way down. Where all boxes overlap, nothing tells the ways apart.
 const MOST_LOOKED_AT: u32 = 48;
 
@@ -157,9 +165,8 @@ impl<V: BoundingVolume> Search<'_, V> {
             }
             let way = way | (lane as u64) << shift;
             match &inner.kids[lane] {
-                Kid::Leaf(leaf) => {
-                    let share = if leaf.entries.len() == LANES { DIVISION_SHARE } else { ENTRY_SHARE };
-                    let price = price + share * growth.after[lane];
+                Kid::Leaf(_) => {
+                    let price = price + ENTRY_SHARE * growth.after[lane];
                     if price < self.best || self.best == f32::INFINITY {
                         (self.best, self.way) = (price.min(f32::MAX), way);
                     }

@@ -175,6 +175,11 @@ impl<const PAIRS: usize> BoundingVolume for KDop<PAIRS> {
     }
 
     #[inline(always)]
+    fn nothing() -> DopBound<PAIRS> {
+        DopBound { low: [f32::INFINITY; PAIRS], high: [f32::INFINITY; PAIRS] }
+    }
+
+    #[inline(always)]
     fn union(a: &DopBound<PAIRS>, b: &DopBound<PAIRS>) -> DopBound<PAIRS> {
         let lesser =
             |a: &[f32; PAIRS], b: &[f32; PAIRS]| std::array::from_fn(|i| if b[i] < a[i] { b[i] } else { a[i] });

@@ -64,6 +64,8 @@ pub struct ObbLanes {
 const UPRIGHT: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl ObbBound {
+    const NOTHING: Self = Self { center: [0.0; 3], half_extents: [f32::NEG_INFINITY; 3], axes: UPRIGHT };
+
     pub(super) const EVERYTHING: Self = Self { center: [0.0; 3], half_extents: [f32::INFINITY; 3], axes: UPRIGHT };
 
     /// The numbers as they are, for exact products.
@@ -165,7 +167,17 @@ impl BoundingVolume for OrientedBox {
     /// Along the axes of the one, of the other, or of the world, whichever has the least cost: a large box keeps its axes
     /// when it takes in a small one, boxes turned alike stay so, and those turned in every way are no worse off than
     /// upright boxes around them. Gottschalk's fit to points has none here: a bound knows no points.
+    fn nothing() -> ObbBound {
+        ObbBound::NOTHING
+    }
+
     fn union(a: &ObbBound, b: &ObbBound) -> ObbBound {
+        if *b == ObbBound::NOTHING {
+            return *a;
+        }
+        if *a == ObbBound::NOTHING {
+            return *b;
+        }
         if a == b || *a == ObbBound::EVERYTHING || a.holds(b, UNION_SKEW) {
             return *a;
         }

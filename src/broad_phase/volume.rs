@@ -45,6 +45,7 @@ pub trait BoundingVolume: Copy + PartialEq + Debug {
 
     /// The bound that holds nothing: joined with another it gives that other one. Only ever asked for unions.
     fn nothing() -> Self::Bound;
+
     /// A bound that holds both.
     fn union(a: &Self::Bound, b: &Self::Bound) -> Self::Bound;
     /// Whether every volume within `inner` is known to be within `outer`. A bound holds itself and what it was joined of.

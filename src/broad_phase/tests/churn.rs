@@ -59,14 +59,14 @@ fn wear(count: usize, changes: usize, list: usize) -> (f64, f64) {
     let ((boxes, rays), (new_boxes, new_rays)) = (visited(&tree, count), visited(&tree.rebuilt(), count));
     let (boxes, rays) = (boxes as f64 / new_boxes as f64, rays as f64 / new_rays as f64);
     println!("{count} boxes, {made} changes in lists of {list}: boxes {boxes:.3}, rays {rays:.3}\n{worn:?}\n{fresh:?}");
-    assert!(worn.surface_cost <= 1.25 * fresh.surface_cost, "{worn:?} {fresh:?}");
+    assert!(worn.surface_cost <= 1.15 * fresh.surface_cost, "{worn:?} {fresh:?}");
     assert!(worn.depth <= fresh.depth + 2 && worn.rounds > 0, "{worn:?} {fresh:?}");
     (boxes, rays)
 }
 
 #[test]
 fn churn_leaves_the_tree_like_a_new_one() {
-    for (list, most) in [(10, 1.2), (500, 1.2)] {
+    for (list, most) in [(10, 1.1), (500, 1.1)] {
         let (boxes, rays) = wear(2000, 60_000, list);
         assert!(boxes <= most && rays <= most, "lists of {list}: boxes {boxes}, rays {rays}");
     }
@@ -100,7 +100,7 @@ fn many_small_moves_leave_a_tree_like_a_new_one() {
     }
     tree.validate().unwrap();
     let (worn, fresh) = (tree.health(), tree.rebuilt().health());
-    assert!(worn.surface_cost < 1.6 * fresh.surface_cost, "{worn:?} {fresh:?}");
+    assert!(worn.surface_cost < 1.3 * fresh.surface_cost, "{worn:?} {fresh:?}");
 }
 
 #[test]
@@ -116,8 +116,8 @@ fn upkeep_is_bounded_by_the_changes() {
             }
             tree.settle();
             let after = tree.health();
-            // At most what the list owes (twice, for an entry that is put in anew as well), and one part in advance.
-            assert!(after.upkeep - before.upkeep <= 2 * list as u64 + 512, "{before:?} {after:?}");
+            // At most what the list owes (one and a half for an entry that is put in anew), and one part in advance.
+            assert!(after.upkeep - before.upkeep <= 3 * list as u64 + 512, "{before:?} {after:?}");
             assert!(after.debt <= 0.0 && after.debt > -513.0, "{after:?}");
         }
     }
