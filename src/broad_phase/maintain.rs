@@ -23,7 +23,7 @@ use super::volume::{BoundingVolume, LANES};
 pub(super) const MOVE_DEBT: f64 = 1.0 / 16.0;
 
 /// What an insertion, a removal, or an entry that is put in anew adds.
-pub(super) const PLACE_DEBT: f64 = 1.5;
+pub(super) const PLACE_DEBT: f64 = 2.5;
 
 /// At this level and below all entries under a node are grouped anew.
 const ENTRY_LEVELS: u32 = 2;
