@@ -37,10 +37,13 @@ struct Told {
     pairs: u64,
 }
 
+/// Answers a motion in a scene.
+type Check = Box<dyn Fn(&Snapshot, &Edge) -> Told>;
+
 /// A way to check a motion.
 struct Way {
     name: String,
-    check: Box<dyn Fn(&Snapshot, &Edge) -> Told>,
+    check: Check,
 }
 
 fn main() {

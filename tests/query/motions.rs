@@ -94,7 +94,7 @@ fn a_motion_in_an_empty_scene_is_free_after_one_state() {
 #[test]
 fn the_first_contact_of_a_turn_is_bracketed() {
     let there = 1.2f64;
-    let ball = ("ball", Shape::sphere(0.1).unwrap(), at(0.8 * there.cos(), 0.8 * there.sin(), 0.0));
+    let ball = ("ball", Shape::sphere(0.1).unwrap(), at(0.8 * libm::cos(there), 0.8 * libm::sin(there), 0.0));
     let snapshot = scene(CRANE, &[ball]).snapshot();
     let contact = (there - libm::asin(0.15 / 0.8)) / 3.0;
     let item = one(&snapshot, &question(&[0.0, RAISED, 3.0, RAISED]));
