@@ -22,7 +22,7 @@ const FEW_CELLS: usize = 12;
 
 /// A cell that is not empty.
 #[derive(Clone, Copy)]
-struct Cell<V: BoundingVolume> {
+struct Block<V: BoundingVolume> {
     bound: V::Bound,
     count: usize,
     /// Along each axis.
@@ -59,8 +59,8 @@ pub(super) fn parts<V: BoundingVolume>(
         number as u8
     }));
     let used = found.iter().enumerate().filter(|(_, (_, count))| *count > 0);
-    let mut cells: ArrayVec<Cell<V>, CELLS> = used
-        .map(|(number, (bound, count))| Cell { bound: *bound, count: *count, layers: grid.layers(number), number })
+    let mut cells: ArrayVec<Block<V>, CELLS> = used
+        .map(|(number, (bound, count))| Block { bound: *bound, count: *count, layers: grid.layers(number), number })
         .collect();
     if cells.len() < FEW_CELLS || cells.iter().any(|cell| cell.count > most.min(items.len() / 2)) {
         return None;
@@ -89,7 +89,7 @@ pub(super) fn parts<V: BoundingVolume>(
 
 /// Up to eight groups of cells, the dearest split first.
 fn grouped<V: BoundingVolume>(
-    cells: &mut [Cell<V>],
+    cells: &mut [Block<V>],
     bound: &V::Bound,
     count: usize,
     unit: usize,
@@ -110,7 +110,7 @@ fn grouped<V: BoundingVolume>(
 }
 
 /// Splits at least two cells between two layers of an axis.
-fn halves<V: BoundingVolume>(cells: &mut [Cell<V>], start: usize, unit: usize) -> [Group<V>; 2] {
+fn halves<V: BoundingVolume>(cells: &mut [Block<V>], start: usize, unit: usize) -> [Group<V>; 2] {
     let mut best = (f32::INFINITY, 0, 1);
     for axis in 0..3 {
         let (least, most) = cells

@@ -174,7 +174,7 @@ async fn ask(door: &impl Door, random: &mut Random, rule: Rule, history: &Histor
     let probe = random.place();
     let [x, y, z] = probe;
     let items = vec![all_pairs(), placed(sphere(RADIUS), at(x, y, z))];
-    let mut context = asked_of(rule.clone());
+    let mut context = asked_of(rule);
     context.max_pairs = Some(10_000);
     let question = v1::CollideRequest { context: Some(context), ..collide(items) };
     let known = history.known.load(Ordering::SeqCst);
