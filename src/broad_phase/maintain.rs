@@ -23,7 +23,7 @@ use super::volume::{BoundingVolume, LANES};
 pub(super) const MOVE_DEBT: f64 = 1.0 / 16.0;
 
 /// What an insertion, a removal, or an entry that is put in anew adds.
-pub(super) const PLACE_DEBT: f64 = 1.5;
+pub(super) const PLACE_DEBT: f64 = 2.5;
 
 /// At this level and below all entries under a node are grouped anew.
 const ENTRY_LEVELS: u32 = 2;
@@ -150,7 +150,7 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
         }
         let outermost = entries.split_off(staying);
         let mut items: Vec<Item<V>> =
-            (0..).zip(&entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
+            (0..).zip(&entries).map(|(index, entry)| Item::new(entry.volume.bound(), index)).collect();
         let mut arranger = Arranger { stock: Stock::Entries(&entries), places: self.places, homes: None };
         let (kid, _) = arranger.arrange(&mut items, shared.level + SPARE_LEVELS);
         if kid.level() <= tallest && cost_below(&kid) < shared.kids.iter().map(cost_of).sum() {
@@ -188,8 +188,7 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
             }
         }
         let count = tops.len();
-        let mut items: Vec<Item<V>> =
-            (0..).zip(&tops).map(|(index, (_, _, bound))| Item { bound: *bound, index }).collect();
+        let mut items: Vec<Item<V>> = (0..).zip(&tops).map(|(index, (_, _, bound))| Item::new(*bound, index)).collect();
         let mut nodes: Vec<Option<Kid<V>>> = tops.into_iter().map(|(_, kid, _)| Some(kid)).collect();
         let ids: BTreeSet<u32> = nodes.iter().flatten().map(Kid::id).collect();
         let mut arranger = Arranger { stock: Stock::Nodes(&mut nodes), places: self.places, homes: None };

@@ -9,6 +9,7 @@ mod aabb;
 mod arrange;
 mod build;
 mod cast;
+mod cells;
 mod health;
 mod insert;
 mod maintain;
