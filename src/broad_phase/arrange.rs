@@ -7,6 +7,7 @@
 //! by the cells of a grid first (`grid.rs`). More bins, or all three axes, take longer and give no better trees. The depth
 //! is bounded: a split that would leave a part with more things than its levels can hold is not made.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
@@ -16,11 +17,15 @@ use super::node::{Entry, Inner, Kid, Leaf};
 use super::places::Places;
 use super::volume::{BoundingVolume, LANES};
 
-/// Bins along an axis.
-const BINS: usize = 8;
+/// Bins along an axis; half as many for parts of few things.
+const BINS: usize = 16;
 
-/// More things than these are parted by a grid: fewer are not worth looking at 64 cells.
-const GRIDDED: usize = 256;
+/// Things that are few.
+const FEW: usize = 64;
+
+/// Up to so many things the best split of all three axes is sought, above it of the axis along which they spread most:
+/// high up in the tree splits hardly differ.
+const ALL_AXES: usize = 64;
 
 /// What is to be grouped.
 pub(super) enum Stock<'a, V: BoundingVolume> {
@@ -28,13 +33,30 @@ pub(super) enum Stock<'a, V: BoundingVolume> {
     Entries(&'a [Entry<V>]),
     /// Under inner nodes.
     Nodes(&'a mut [Option<Kid<V>>]),
+    /// Under inner nodes, the entries of each cell for themselves: where they stand among all items, and those.
+    Cells(&'a [Range<usize>], &'a mut [Item<V>], &'a [Entry<V>]),
 }
 
-/// One thing: its bound and its index in the stock.
+/// One thing: its bound, where that is, and its index in the stock.
 #[derive(Clone, Copy)]
 pub(super) struct Item<V: BoundingVolume> {
-    pub(super) bound: V::Bound,
+    bound: V::Bound,
+    centre: [f32; 3],
     pub(super) index: u32,
+}
+
+impl<V: BoundingVolume> Item<V> {
+    pub(super) fn centre(&self) -> [f32; 3] {
+        self.centre
+    }
+
+    pub(super) fn bound(&self) -> &V::Bound {
+        &self.bound
+    }
+
+    pub(super) fn new(bound: V::Bound, index: u32) -> Self {
+        Self { bound, centre: V::centre(&bound), index }
+    }
 }
 
 /// A part of the items.
@@ -70,7 +92,7 @@ impl<'a, V: BoundingVolume> Arranger<'a, V> {
     fn unit(&self) -> usize {
         match self.stock {
             Stock::Entries(_) => LANES,
-            Stock::Nodes(_) => 1,
+            Stock::Nodes(_) | Stock::Cells(..) => 1,
         }
     }
 
@@ -106,7 +128,11 @@ impl<'a, V: BoundingVolume> Arranger<'a, V> {
             let taken: usize = parts.iter().map(|part| (part.end - part.start).div_ceil(most)).sum();
             let Part { start, end, .. } = parts[worst];
             let room = LANES - (taken - (end - start).div_ceil(most));
-            let (left, first, second) = split::<V>(&mut items[start..end], &mut self.spare, unit, most, room);
+            let part = &mut items[start..end];
+            let (left, first, second) = match &self.stock {
+                Stock::Cells(cells, ..) => split(part, unit, most, room, |item| cells[item.index as usize].len()),
+                Stock::Entries(_) | Stock::Nodes(_) => split(part, unit, most, room, |_| 1),
+            };
             parts[worst] = Part { start, end: start + left, bound: first };
             parts.push(Part { start: start + left, end, bound: second });
         }
@@ -133,6 +159,12 @@ impl<'a, V: BoundingVolume> Arranger<'a, V> {
                 Kid::Leaf(Arc::new(Leaf::of(id, &own)))
             }
             Stock::Nodes(nodes) => nodes[items[0].index as usize].take().expect("each node is taken once"),
+            Stock::Cells(cells, all, entries) => {
+                let own = &mut all[cells[items[0].index as usize].clone()];
+                let levels = roomy_levels(own.len());
+                let homes = self.homes.as_deref_mut();
+                Arranger { stock: Stock::Entries(entries), places: self.places, homes }.arrange(own, levels).0
+            }
         }
     }
 }
@@ -167,12 +199,12 @@ pub(super) fn halve<V: BoundingVolume>(items: &mut [Item<V>], least: usize) -> u
 
 fn sort_along<V: BoundingVolume>(items: &mut [Item<V>], axis: usize) {
     items.sort_unstable_by(|a, b| {
-        let key = |item: &Item<V>| V::centre(&item.bound)[axis];
+        let key = |item: &Item<V>| item.centre[axis];
         key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index))
     });
 }
 
-fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
+pub(super) fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
     items[1..].iter().fold(items[0].bound, |all, item| V::union(&all, &item.bound))
 }
 
@@ -194,62 +226,77 @@ fn split<V: BoundingVolume>(
     unit: usize,
     most: usize,
     room: usize,
+    weight: impl Fn(&Item<V>) -> usize,
 ) -> (usize, V::Bound, V::Bound) {
     let count = items.len();
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
     for item in items.iter() {
-        let centre = V::centre(&item.bound);
+        let centre = item.centre;
         for axis in 0..3 {
-            low[axis] = low[axis].min(centre[axis]);
-            high[axis] = high[axis].max(centre[axis]);
+            // Plain comparisons: no centre is NaN.
+            low[axis] = if centre[axis] < low[axis] { centre[axis] } else { low[axis] };
+            high[axis] = if centre[axis] > high[axis] { centre[axis] } else { high[axis] };
         }
     }
     let extent = |axis: usize| high[axis] / 2.0 - low[axis] / 2.0;
     let longest = (1..3).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best });
-    let scale = (BINS as f32 * 0.499_999) / extent(longest);
-    if !(scale.is_finite() && extent(longest) > 0.0) {
-        return cut::<V>(items, unit, most, longest);
-    }
-    let bin_of = |item: &Item<V>| {
-        let centre = V::centre_along(&item.bound, longest);
-        (((centre - low[longest]) * scale) as usize).min(BINS - 1)
-    };
-    let mut counts = [0_usize; BINS];
-    let mut bounds = [V::nothing(); BINS];
-    for item in items.iter() {
-        let bin = bin_of(item);
-        counts[bin] += 1;
-        bounds[bin] = V::union(&bounds[bin], &item.bound);
-    }
-    let mut after = bounds;
-    for i in (1..BINS - 1).rev() {
-        after[i] = V::union(&after[i], &after[i + 1]);
-    }
+    let bins = if count > FEW { BINS } else { BINS / 2 };
+    let axes = if count > ALL_AXES { longest..longest + 1 } else { 0..3 };
+    // A split makes at most one part more; there are few parts for which that is too many.
+    let tight = count.div_ceil(most) >= room;
+    let leaves = |count: usize| ((count + unit - 1) >> unit.trailing_zeros()) as f32;
     let mut best: Option<Split<V>> = None;
-    let (mut left, mut first) = (0, V::nothing());
-    for edge in 1..BINS {
-        left += counts[edge - 1];
-        first = V::union(&first, &bounds[edge - 1]);
-        let right = count - left;
-        if left == 0 || right == 0 || left.div_ceil(most) + right.div_ceil(most) > room {
+    for axis in axes {
+        let scale = (bins as f32 * 0.499_999) / extent(axis);
+        if !(scale.is_finite() && extent(axis) > 0.0) {
             continue;
         }
-        let second = after[edge];
-        let price = V::cost(&first) * left.div_ceil(unit) as f32 + V::cost(&second) * right.div_ceil(unit) as f32;
-        if best.as_ref().is_none_or(|best| price < best.price) {
-            best = Some(Split { price, edge, left, first, second });
+        let (mut counts, mut weights) = ([0_usize; BINS], [0_usize; BINS]);
+        let mut bounds = [V::nothing(); BINS];
+        for item in items.iter() {
+            let bin = (((item.centre[axis] - low[axis]) * scale) as usize).min(bins - 1);
+            counts[bin] += 1;
+            weights[bin] += weight(item);
+            bounds[bin] = V::union(&bounds[bin], &item.bound);
+        }
+        let mut after = bounds;
+        for i in (1..bins - 1).rev() {
+            after[i] = V::union(&after[i], &after[i + 1]);
+        }
+        let whole: usize = weights.iter().sum();
+        let (mut left, mut lighter, mut first) = (0, 0, V::nothing());
+        for edge in 1..bins {
+            left += counts[edge - 1];
+            lighter += weights[edge - 1];
+            first = V::union(&first, &bounds[edge - 1]);
+            let right = count - left;
+            if left == 0 || right == 0 || tight && left.div_ceil(most) + right.div_ceil(most) > room {
+                continue;
+            }
+            let second = after[edge];
+            let price = V::cost(&first) * leaves(lighter) + V::cost(&second) * leaves(whole - lighter);
+            if best.as_ref().is_none_or(|best| price < best.price) {
+                best = Some(Split { price, axis, edge, left, first, second });
+            }
         }
     }
-    let Some(Split { edge, left, first, second, .. }) = best else { return cut::<V>(items, unit, most, longest) };
-    // Through a copy, and without a branch that nobody can predict.
-    spare.clear();
-    spare.extend_from_slice(items);
-    let (mut front, mut back) = (0, left);
-    for item in spare.iter() {
-        let is_first = bin_of(item) < edge;
-        items[if is_first { front } else { back }] = *item;
-        front += usize::from(is_first);
-        back += usize::from(!is_first);
+    let Some(Split { axis, edge, left, first, second, .. }) = best else { return cut::<V>(items, unit, most, longest) };
+    let scale = (bins as f32 * 0.499_999) / extent(axis);
+    let first_side = |item: &Item<V>| (item.centre[axis] - low[axis]) * scale < edge as f32;
+    let (mut front, mut back) = (0, count);
+    loop {
+        while front < back && first_side(&items[front]) {
+            front += 1;
+        }
+        while front < back && !first_side(&items[back - 1]) {
+            back -= 1;
+        }
+        if front >= back {
+            break;
+        }
+        back -= 1;
+        items.swap(front, back);
+        front += 1;
     }
     debug_assert_eq!(front, left, "items fall into the same bins again");
     (left, first, second)
@@ -261,7 +308,7 @@ fn cut<V: BoundingVolume>(items: &mut [Item<V>], unit: usize, most: usize, axis:
     let left = items.len().div_ceil(step).div_ceil(2) * step;
     let left = if left < items.len() { left } else { items.len() / 2 };
     items.select_nth_unstable_by(left, |a, b| {
-        let key = |item: &Item<V>| V::centre(&item.bound)[axis];
+        let key = |item: &Item<V>| item.centre[axis];
         key(a).total_cmp(&key(b)).then(a.index.cmp(&b.index))
     });
     let (first, second) = items.split_at(left);

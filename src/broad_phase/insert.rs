@@ -180,7 +180,7 @@ impl<V: BoundingVolume> Search<'_, V> {
 fn divide_leaf<V: BoundingVolume>(leaf: &mut Leaf<V>, entry: &Entry<V>, places: &mut Places) -> Kid<V> {
     let nine: ArrayVec<Entry<V>, { LANES + 1 }> = leaf.all().chain([*entry]).collect();
     let mut items: ArrayVec<Item<V>, { LANES + 1 }> =
-        (0..).zip(&nine).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
+        (0..).zip(&nine).map(|(index, entry)| Item::new(entry.volume.bound(), index)).collect();
     let left = halve(&mut items, LEAST_SIDE);
     let side = |items: &[Item<V>]| -> ArrayVec<Entry<V>, LANES> {
         items.iter().map(|item| nine[item.index as usize]).collect()
@@ -197,7 +197,7 @@ fn divide_inner<V: BoundingVolume>(inner: &mut Inner<V>, sibling: Kid<V>, places
     let mut nine: ArrayVec<Option<Kid<V>>, { LANES + 1 }> = inner.kids.drain(..).map(Some).collect();
     nine.push(Some(sibling));
     let mut items: ArrayVec<Item<V>, { LANES + 1 }> =
-        (0..).zip(nine.iter().flatten()).map(|(index, kid)| Item { bound: kid.bound(), index }).collect();
+        (0..).zip(nine.iter().flatten()).map(|(index, kid)| Item::new(kid.bound(), index)).collect();
     let left = halve(&mut items, LEAST_SIDE);
     let mut other = Inner::empty(places.new_node(), inner.level);
     inner.lanes = V::no_lanes();

@@ -150,8 +150,8 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
         }
         let outermost = entries.split_off(staying);
         let mut items: Vec<Item<V>> =
-            (0..).zip(&entries).map(|(index, entry)| Item { bound: entry.volume.bound(), index }).collect();
-        let mut arranger = Arranger::new(Stock::Entries(&entries), self.places, None);
+            (0..).zip(&entries).map(|(index, entry)| Item::new(entry.volume.bound(), index)).collect();
+        let mut arranger = Arranger { stock: Stock::Entries(&entries), places: self.places, homes: None };
         let (kid, _) = arranger.arrange(&mut items, shared.level + SPARE_LEVELS);
         if kid.level() <= tallest && cost_below(&kid) < shared.kids.iter().map(cost_of).sum() {
             shared.kids.iter().for_each(|kid| free_ids(kid, self.places));
@@ -188,8 +188,7 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
             }
         }
         let count = tops.len();
-        let mut items: Vec<Item<V>> =
-            (0..).zip(&tops).map(|(index, (_, _, bound))| Item { bound: *bound, index }).collect();
+        let mut items: Vec<Item<V>> = (0..).zip(&tops).map(|(index, (_, _, bound))| Item::new(*bound, index)).collect();
         let mut nodes: Vec<Option<Kid<V>>> = tops.into_iter().map(|(_, kid, _)| Some(kid)).collect();
         let ids: BTreeSet<u32> = nodes.iter().flatten().map(Kid::id).collect();
         let mut arranger = Arranger::new(Stock::Nodes(&mut nodes), self.places, None);
