@@ -111,12 +111,6 @@ impl BoundingVolume for Aabb {
     }
 
     #[inline(always)]
-    fn centre_along(bound: &BoxBound, axis: usize) -> f32 {
-        let middle = (bound.0[axis] - bound.0[axis + 3]).clamp(-f32::MAX, f32::MAX);
-        if middle.is_nan() { 0.0 } else { middle }
-    }
-
-    #[inline(always)]
     fn no_lanes() -> BoxLanes {
         BoxLanes([[f32::INFINITY; LANES]; 6])
     }

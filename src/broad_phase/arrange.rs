@@ -2,17 +2,15 @@
 //!
 //! Top down: a node's things are split in two again and again, the dearest part first, until it has eight children (as
 //! Wald, Benthin, Boulos, "Getting rid of packets", 2008, collapse binary trees). A split is chosen among those between
-//! eight bins of the centres along the axis on which they spread most (Wald, "On fast construction of SAH-based bounding
-//! volume hierarchies", 2007), its price taken in whole leaves, so that leaves come out full. Very many things are parted
-//! by the cells of a grid first (`grid.rs`). More bins, or all three axes, take longer and give no better trees. The depth
-//! is bounded: a split that would leave a part with more things than its levels can hold is not made.
+//! sixteen bins of the centres (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), its price
+//! taken in whole leaves, so that leaves come out full. The depth is bounded: a split that would leave a part with more
+//! things than its levels can hold is not made.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
-use super::grid;
 use super::node::{Entry, Inner, Kid, Leaf};
 use super::places::Places;
 use super::volume::{BoundingVolume, LANES};
@@ -60,22 +58,18 @@ impl<V: BoundingVolume> Item<V> {
 }
 
 /// A part of the items.
-pub(super) struct Part<V: BoundingVolume> {
-    pub(super) start: usize,
-    pub(super) end: usize,
-    pub(super) bound: V::Bound,
+struct Part<V: BoundingVolume> {
+    start: usize,
+    end: usize,
+    bound: V::Bound,
 }
 
 /// Makes nodes over a stock.
 pub(super) struct Arranger<'a, V: BoundingVolume> {
-    stock: Stock<'a, V>,
-    places: &'a mut Places,
+    pub(super) stock: Stock<'a, V>,
+    pub(super) places: &'a mut Places,
     /// Where the leaf of each slot is noted; nowhere but in `places` if there is no list.
-    homes: Option<&'a mut Vec<u32>>,
-    /// Memory for items on their way to their parts.
-    spare: Vec<Item<V>>,
-    /// Memory for the cells that items are in.
-    numbers: Vec<u8>,
+    pub(super) homes: Option<&'a mut Vec<u32>>,
 }
 
 /// Inner levels that `count` things need, with room for uneven splits.
@@ -83,11 +77,7 @@ pub(super) fn roomy_levels(count: usize) -> u32 {
     (count.max(1) as u64).ilog(LANES as u64) + 3
 }
 
-impl<'a, V: BoundingVolume> Arranger<'a, V> {
-    pub(super) fn new(stock: Stock<'a, V>, places: &'a mut Places, homes: Option<&'a mut Vec<u32>>) -> Self {
-        Self { stock, places, homes, spare: Vec::new(), numbers: Vec::new() }
-    }
-
+impl<V: BoundingVolume> Arranger<'_, V> {
     /// Things of the stock that one child without children of its own holds.
     fn unit(&self) -> usize {
         match self.stock {
@@ -109,14 +99,8 @@ impl<'a, V: BoundingVolume> Arranger<'a, V> {
         }
         let unit = self.unit();
         let most = unit.saturating_mul(LANES.saturating_pow(levels.saturating_sub(1)));
-        let gridded = (items.len() > GRIDDED)
-            .then(|| grid::parts(items, &mut self.spare, &mut self.numbers, bound, unit, most))
-            .flatten();
-        let mut parts: ArrayVec<Part<V>, LANES> = gridded.unwrap_or_else(|| {
-            let mut parts = ArrayVec::new();
-            parts.push(Part { start: 0, end: items.len(), bound: *bound });
-            parts
-        });
+        let mut parts: ArrayVec<Part<V>, LANES> = ArrayVec::new();
+        parts.push(Part { start: 0, end: items.len(), bound: *bound });
         while parts.len() < LANES {
             // A part that is too large for a child goes first; else the one that is dearest to visit.
             let price = |part: &Part<V>| match part.end - part.start {
@@ -208,9 +192,10 @@ pub(super) fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
     items[1..].iter().fold(items[0].bound, |all, item| V::union(&all, &item.bound))
 }
 
-/// A way to divide a part: at the lower edge of a bin.
+/// A way to divide a part: at the lower edge of a bin of an axis.
 struct Split<V: BoundingVolume> {
     price: f32,
+    axis: usize,
     edge: usize,
     /// Things on the first side.
     left: usize,
@@ -222,7 +207,6 @@ struct Split<V: BoundingVolume> {
 /// at most `most` things, together, stays within `room`.
 fn split<V: BoundingVolume>(
     items: &mut [Item<V>],
-    spare: &mut Vec<Item<V>>,
     unit: usize,
     most: usize,
     room: usize,

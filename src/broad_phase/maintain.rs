@@ -191,7 +191,7 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
         let mut items: Vec<Item<V>> = (0..).zip(&tops).map(|(index, (_, _, bound))| Item::new(*bound, index)).collect();
         let mut nodes: Vec<Option<Kid<V>>> = tops.into_iter().map(|(_, kid, _)| Some(kid)).collect();
         let ids: BTreeSet<u32> = nodes.iter().flatten().map(Kid::id).collect();
-        let mut arranger = Arranger::new(Stock::Nodes(&mut nodes), self.places, None);
+        let mut arranger = Arranger { stock: Stock::Nodes(&mut nodes), places: self.places, homes: None };
         let levels = (count.max(2) as u64 - 1).ilog(LANES as u64) + 1 + SPARE_LEVELS;
         let (kid, _) = arranger.arrange(&mut items, levels);
         let (mut after, mut new_ids) = (0.0, Vec::new());

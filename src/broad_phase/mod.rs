@@ -13,6 +13,7 @@ mod broad_phase;
 mod build;
 mod cast;
 mod cells;
+mod exhaustive;
 mod health;
 mod insert;
 mod kdop;

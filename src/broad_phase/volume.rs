@@ -55,11 +55,6 @@ pub trait BoundingVolume: Copy + PartialEq + Debug {
     /// Where the bound is, finite; in any unit, as long as it is the same for all.
     fn centre(bound: &Self::Bound) -> [f32; 3];
 
-    /// [`BoundingVolume::centre`] along one axis.
-    fn centre_along(bound: &Self::Bound, axis: usize) -> f32 {
-        Self::centre(bound)[axis]
-    }
-
     /// Lanes without any child.
     fn no_lanes() -> Self::Lanes;
     /// Puts a bound into a lane.
