@@ -31,7 +31,7 @@ pub const FLOORS: &[Floor] = &[
     Floor { name: "narrow_phase", may_name: &[GEOMETRY], but_not: &[] },
     Floor {
         name: "broad_phase",
-        may_name: &["geometry::Aabb", "geometry::Vec3", "geometry::Pose", "geometry::Placement"],
+        may_name: &["geometry::Aabb", "geometry::BoxCast", "geometry::Vec3", "geometry::Pose", "geometry::Placement"],
         but_not: &[],
     },
     Floor { name: "robot", may_name: &[GEOMETRY], but_not: &[] },
