@@ -19,11 +19,11 @@ use super::volume::{BoundingVolume, LANES};
 const BINS: usize = 16;
 
 /// Things that are few.
-const FEW: usize = 64;
+const FEW: usize = 12;
 
 /// Up to so many things the best split of all three axes is sought, above it of the axis along which they spread most:
 /// high up in the tree splits hardly differ.
-const ALL_AXES: usize = 64;
+const ALL_AXES: usize = 512;
 
 /// What is to be grouped.
 pub(super) enum Stock<'a, V: BoundingVolume> {
@@ -228,7 +228,7 @@ fn split<V: BoundingVolume>(
     let axes = if count > ALL_AXES { longest..longest + 1 } else { 0..3 };
     // A split makes at most one part more; there are few parts for which that is too many.
     let tight = count.div_ceil(most) >= room;
-    let leaves = |count: usize| ((count + unit - 1) >> unit.trailing_zeros()) as f32;
+    let leaves = |count: usize| (count as u32).div_ceil(unit as u32) as f32;
     let mut best: Option<Split<V>> = None;
     for axis in axes {
         let scale = (bins as f32 * 0.499_999) / extent(axis);

@@ -140,7 +140,7 @@ struct Search<'a, V: BoundingVolume> {
 const ENTRY_SHARE: f32 = 1.0 / 8.0;
 
 /// Nodes a search looks at, beyond the way down. Where all boxes overlap, nothing tells the ways apart.
-const MOST_LOOKED_AT: u32 = 48;
+const MOST_LOOKED_AT: u32 = 256;
 
 impl<V: BoundingVolume> Search<'_, V> {
     fn for_leaf(root: &Kid<V>, bound: &V::Bound) -> u64 {

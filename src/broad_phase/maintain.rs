@@ -2,7 +2,7 @@
 //!
 //! Every change adds to a debt, counted in things to be arranged anew: insertions, removals and entries put in anew much,
 //! moves within a leaf little. `settle` pays it off by visiting inner nodes in the order of the tree: near the leaves all
-//! entries below a node are grouped anew (up to 512), higher up its dearest descendants (up to 128), if that is cheaper. So the work of a
+//! entries below a node are grouped anew (up to 512), higher up its dearest descendants (up to 512), if that is cheaper. So the work of a
 //! list of changes is bounded by their number, and after some constant times as many changes as there are entries every
 //! part has been visited. Treelets: Karras, Aila, "Fast parallel construction of high-quality bounding volume
 //! hierarchies", 2013; in turn and by debt is our choice, since it needs no search for the worst.
@@ -20,7 +20,7 @@ use super::tree::DynamicTree;
 use super::volume::{BoundingVolume, LANES};
 
 /// What a change adds to the debt, in entries to be arranged anew.
-pub(super) const MOVE_DEBT: f64 = 1.0 / 16.0;
+pub(super) const MOVE_DEBT: f64 = 1.0 / 64.0;
 
 /// What an insertion, a removal, or an entry that is put in anew adds.
 pub(super) const PLACE_DEBT: f64 = 2.5;
@@ -33,7 +33,7 @@ const ENTRY_LEVELS: u32 = 2;
 const OUTERMOST: usize = 16;
 
 /// Nodes below a higher node that are grouped anew.
-const NODES: usize = 128;
+const NODES: usize = 512;
 
 /// Levels a part may use beyond those that it needs when all its nodes are full. Without room good splits are impossible.
 const SPARE_LEVELS: u32 = 1;

@@ -64,7 +64,9 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
         for lane in 0..leaf.entries.len() {
             let probe = V::probe_of(&V::get(&leaf.lanes, lane));
             let later = !0_u8 << lane << 1;
-            self.report(leaf, lane, leaf, V::meeting(&leaf.lanes, &probe).maybe & later)?;
+            for other in lanes_of(V::meeting(&leaf.lanes, &probe).maybe & later) {
+                self.report(leaf, lane, leaf, other)?;
+            }
         }
         ControlFlow::Continue(())
     }
@@ -96,10 +98,10 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
                 ControlFlow::Continue(())
             }
             (Kid::Inner(a), Kid::Leaf(_)) => {
-                self.descend(a, b, bound_b, |walk, kid, bound| walk.between(kid, bound, b, bound_b))
+                self.descend(a, bound_b, |walk, kid, bound| walk.between(kid, bound, b, bound_b))
             }
             (Kid::Leaf(_), Kid::Inner(b)) => {
-                self.descend(b, a, bound_a, |walk, kid, bound| walk.between(a, bound_a, kid, bound))
+                self.descend(b, bound_a, |walk, kid, bound| walk.between(a, bound_a, kid, bound))
             }
         }
     }
@@ -108,7 +110,6 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
     fn descend<V: BoundingVolume>(
         &mut self,
         inner: &Inner<V>,
-        _leaf: &Kid<V>,
         bound: &V::Bound,
         mut go_on: impl FnMut(&mut Self, &Kid<V>, &V::Bound) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
@@ -135,21 +136,31 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
         if near_b == 0 {
             return ControlFlow::Continue(());
         }
-        for lane in lanes_of(near_a) {
-            let meeting = V::meeting(&b.lanes, &V::probe_of(&V::get(&a.lanes, lane))).maybe & near_b;
-            self.report(a, lane, b, meeting)?;
+        // Lane by lane on the side that has fewer near the other.
+        if near_a.count_ones() <= near_b.count_ones() {
+            for lane in lanes_of(near_a) {
+                let probe = V::probe_of(&V::get(&a.lanes, lane));
+                for other in lanes_of(V::meeting(&b.lanes, &probe).maybe & near_b) {
+                    self.report(a, lane, b, other)?;
+                }
+            }
+        } else {
+            for other in lanes_of(near_b) {
+                let probe = V::probe_of(&V::get(&b.lanes, other));
+                for lane in lanes_of(V::meeting(&a.lanes, &probe).maybe & near_a) {
+                    self.report(a, lane, b, other)?;
+                }
+            }
         }
         ControlFlow::Continue(())
     }
 
-    /// Reports one entry with those in lanes of another leaf that it meets.
+    /// Reports an entry of one leaf and one of another whose bounds meet, if they do.
     #[inline(always)]
-    fn report<V: BoundingVolume>(&mut self, a: &Leaf<V>, lane: usize, b: &Leaf<V>, meeting: u8) -> ControlFlow<()> {
-        self.stats.leaves += u64::from(meeting.count_ones());
-        for other in lanes_of(meeting) {
-            if a.volumes[lane].overlaps(&b.volumes[other]) {
-                (self.visit)(a.payloads[lane], b.payloads[other])?;
-            }
+    fn report<V: BoundingVolume>(&mut self, a: &Leaf<V>, lane: usize, b: &Leaf<V>, other: usize) -> ControlFlow<()> {
+        self.stats.leaves += 1;
+        if a.volumes[lane].overlaps(&b.volumes[other]) {
+            (self.visit)(a.payloads[lane], b.payloads[other])?;
         }
         ControlFlow::Continue(())
     }

@@ -24,7 +24,7 @@ const NO_CHANGE: u32 = u32::MAX;
 /// entries in anew, larger leaves the tree worse until upkeep comes by.
 const LARGEST_STRETCH: f32 = 1.3;
 
-/// An entry leaves a leaf that has become too dear if without it the leaf is cheaper by at least this factor.
+/// In a leaf that is too dear without its moved entries, these may make it dearer by no more than this factor each.
 const LEAST_BLAME: f32 = 1.03;
 
 /// After a removal a leaf of so few entries gives them to others.
@@ -286,27 +286,47 @@ impl<V: BoundingVolume> Pass<'_, V> {
     }
 }
 
-/// The moved entries that should leave a leaf: those without which it would be clearly cheaper, as long as it is too dear.
+/// The moved entries that should leave a leaf that has become too dear: those that do not fit in, taken in one by one,
+/// those that fit best first. (Not those without which it is cheaper: two that have gone the same way hide each other.)
 fn overstretching<V: BoundingVolume>(leaf: &Leaf<V>, moved: u8, gone: u8) -> u8 {
+    let of = |lane: usize| V::get(&leaf.lanes, lane);
     let limit = LARGEST_STRETCH * leaf.arranged;
-    let cost_without = |lanes: u8| {
-        let staying = (0..leaf.entries.len()).filter(|lane| lanes >> lane & 1 == 0);
-        let bound = staying.map(|lane| V::get(&leaf.lanes, lane)).reduce(|a, b| V::union(&a, &b));
-        bound.map_or(0.0, |bound| V::cost(&bound))
-    };
-    let mut going = 0;
-    let mut cost = if gone == 0 { V::cost(&leaf.bound()) } else { cost_without(gone) };
-    while cost > limit {
-        let without = |lane| (cost_without(going | gone | 1_u8 << lane), lane);
-        let candidates = lanes_of(moved & !gone & !going).map(without);
-        let Some((less, lane)) = candidates.reduce(|a, b| if b.0 < a.0 { b } else { a }) else { break };
-        if less * LEAST_BLAME > cost {
-            break; // No one entry is to blame.
-        }
-        going |= 1 << lane;
-        cost = less;
+    if gone == 0 && V::cost(&leaf.bound()) <= limit {
+        return 0;
     }
-    going
+    let there = (((1_u32 << leaf.entries.len()) - 1) as u8) & !gone;
+    let mut outside = moved & there;
+    let mut inside = lanes_of(there & !moved).map(of).reduce(|a, b| V::union(&a, &b));
+    while outside != 0 {
+        let with = |lane: usize| inside.map_or_else(|| of(lane), |inside| V::union(&inside, &of(lane)));
+        let best = match inside {
+            Some(_) => {
+                let priced = lanes_of(outside).map(|lane| (V::cost(&with(lane)), lane));
+                priced.reduce(|a, b| if b.0 < a.0 { b } else { a })
+            }
+            None => middlemost(leaf, outside).map(|lane| (V::cost(&of(lane)), lane)),
+        };
+        let Some((cost, lane)) = best else { break };
+        let fits = inside.is_none_or(|inside| cost <= limit.max(LEAST_BLAME * V::cost(&inside)));
+        if !fits {
+            break;
+        }
+        inside = Some(with(lane));
+        outside &= !(1 << lane);
+    }
+    outside
+}
+
+/// The entry, among some, that is nearest to the middle of them, counted by entries and not by where the outermost are.
+fn middlemost<V: BoundingVolume>(leaf: &Leaf<V>, among: u8) -> Option<usize> {
+    let centre = |lane: usize| V::centre(&V::get(&leaf.lanes, lane));
+    let median: [f32; 3] = std::array::from_fn(|axis| {
+        let mut along: Vec<f32> = lanes_of(among).map(|lane| centre(lane)[axis]).collect();
+        along.sort_unstable_by(f32::total_cmp);
+        along.get(along.len() / 2).copied().unwrap_or(0.0)
+    });
+    let far = |lane: usize| -> f32 { (0..3).map(|axis| (centre(lane)[axis] - median[axis]).abs()).sum() };
+    lanes_of(among).reduce(|a, b| if far(b) < far(a) { b } else { a })
 }
 
 /// Gives back the ids of a subtree.
