@@ -4,33 +4,45 @@
 use std::sync::{Arc, OnceLock};
 
 use clearance::limits::Limits;
+use clearance::scene::{Epoch, Scene, Snapshot};
 use clearance::service::{Config, Service};
 use clearance::transports::wire::{from_proto, v1};
 use libfuzzer_sys::fuzz_target;
 use prost::Message;
 
 static SERVICE: OnceLock<Arc<Service>> = OnceLock::new();
+static SNAPSHOT: OnceLock<Arc<Snapshot>> = OnceLock::new();
+
+/// Decodes a message, and reads it if that can be done.
+fn read<M: Message + Default, T>(bytes: &[u8], reader: impl FnOnce(&M) -> T) {
+    if let Ok(message) = M::decode(bytes) {
+        _ = reader(&message);
+    }
+}
 
 fuzz_target!(|bytes: &[u8]| {
     let service = SERVICE.get_or_init(|| {
         Service::new(&Config { threads: 1, limits: Limits::default() }).expect("a thread can be started")
     });
+    let snapshot = SNAPSHOT.get_or_init(|| Scene::new(Epoch(1)).snapshot());
     let Some((choice, message)) = bytes.split_first() else { return };
-    match choice % 3 {
-        0 => {
-            if let Ok(request) = v1::ApplyRequest::decode(message) {
-                _ = from_proto::change(&request, service.library(), service.robots());
-            }
+    let (library, robots) = (service.library(), service.robots());
+    match choice % 12 {
+        0 => read(message, |request: &v1::ApplyRequest| from_proto::change(request, library, robots)),
+        1 => read(message, |request: &v1::LoadRobotRequest| from_proto::robot_description(request.clone())),
+        2 => read(message, |answer: &v1::Answer| from_proto::answer(answer)),
+        3 => read(message, |request: &v1::CheckStatesRequest| from_proto::check_states(request, snapshot)),
+        4 => read(message, |request: &v1::CollideRequest| from_proto::collide(request, snapshot, library)),
+        5 => read(message, |request: &v1::CheckMotionsRequest| from_proto::check_motions(request, snapshot)),
+        6 => read(message, |request: &v1::CheckPathRequest| from_proto::check_path(request, snapshot)),
+        7 => read(message, |request: &v1::CastRaysRequest| from_proto::cast_rays(request, snapshot)),
+        8 => read(message, |request: &v1::CastShapesRequest| from_proto::cast_shapes(request, snapshot, library)),
+        9 => read(message, |request: &v1::OverlapRequest| from_proto::overlap(request, snapshot, library)),
+        10 => {
+            read(message, |request: &v1::NearestBodiesRequest| from_proto::nearest_bodies(request, snapshot, library))
         }
-        1 => {
-            if let Ok(request) = v1::LoadRobotRequest::decode(message) {
-                _ = from_proto::robot_description(request);
-            }
-        }
-        _ => {
-            if let Ok(answer) = v1::Answer::decode(message) {
-                _ = from_proto::answer(&answer);
-            }
-        }
+        _ => read(message, |request: &v1::WatchContactsRequest| {
+            from_proto::contact_question(request, snapshot, &Limits::default())
+        }),
     }
 });

@@ -97,25 +97,12 @@ impl<'a> Element<'a> {
 
     /// The normal, the offset, and whether it is thin, of an unbounded element.
     pub fn plane(&self) -> Option<(Vec3, f64, bool)> {
-        match self.core() {
-            Core::HalfSpace { normal, offset } => Some((*normal, *offset, false)),
-            Core::Plane { normal, offset } => Some((*normal, *offset, true)),
-            Core::Point
-            | Core::Cuboid { .. }
-            | Core::AxialSegment { .. }
-            | Core::Cylinder { .. }
-            | Core::Cone { .. }
-            | Core::Ellipsoid { .. }
-            | Core::Convex(_)
-            | Core::Triangle(_)
-            | Core::Segment(_)
-            | Core::Mesh(_)
-            | Core::HeightField(_)
-            | Core::PointCloud(_)
-            | Core::Voxels(_)
-            | Core::Column(_)
-            | Core::Block(_)
-            | Core::Compound(_) => None,
+        if let Core::HalfSpace { normal, offset } = self.core() {
+            Some((*normal, *offset, false))
+        } else if let Core::Plane { normal, offset } = self.core() {
+            Some((*normal, *offset, true))
+        } else {
+            None
         }
     }
 

@@ -131,25 +131,12 @@ fn patches(ray: &Local, open: &[(Met, [Vec3; 3])], first: &Met) -> Option<Met> {
 
 /// The triangle that a leaf is, or that covers a column from above: what patches are made of.
 fn surface_of(core: &Core) -> Option<[Vec3; 3]> {
-    match core {
-        Core::Triangle(corners) => Some(*corners),
-        Core::Column(column) => Some(column.top),
-        Core::Point
-        | Core::Cuboid { .. }
-        | Core::AxialSegment { .. }
-        | Core::Cylinder { .. }
-        | Core::Cone { .. }
-        | Core::Ellipsoid { .. }
-        | Core::Convex(_)
-        | Core::Segment(_)
-        | Core::HalfSpace { .. }
-        | Core::Plane { .. }
-        | Core::Mesh(_)
-        | Core::HeightField(_)
-        | Core::PointCloud(_)
-        | Core::Voxels(_)
-        | Core::Block(_)
-        | Core::Compound(_) => None,
+    if let Core::Triangle(corners) = core {
+        Some(*corners)
+    } else if let Core::Column(column) = core {
+        Some(column.top)
+    } else {
+        None
     }
 }
 

@@ -64,25 +64,17 @@ impl<'a> Branches<'a> {
         Self { nodes: mesh.tree().nodes(), mesh: Some(mesh.tree()) }
     }
 
-    /// `alone`: the piece's bounds. None where the piece is of another kind.
+    fn alone(only: &'a Siblings) -> Self {
+        Self { nodes: Nodes::alone(only), mesh: None }
+    }
+
+    /// `alone`: the piece's bounds. None where the piece has a tree of another kind.
     pub fn of(piece: &Piece<'a>, alone: &'a Siblings) -> Option<Self> {
-        match piece.shape.core() {
-            Core::Mesh(mesh) => Some(Self::of_mesh(mesh)),
-            Core::HeightField(_) | Core::PointCloud(_) | Core::Voxels(_) => None,
-            Core::Point
-            | Core::Cuboid { .. }
-            | Core::AxialSegment { .. }
-            | Core::Cylinder { .. }
-            | Core::Cone { .. }
-            | Core::Ellipsoid { .. }
-            | Core::Convex(_)
-            | Core::Triangle(_)
-            | Core::Segment(_)
-            | Core::HalfSpace { .. }
-            | Core::Plane { .. }
-            | Core::Compound(_)
-            | Core::Column(_)
-            | Core::Block(_) => Some(Self { nodes: Nodes::alone(alone), mesh: None }),
+        let core = piece.shape.core();
+        if let Core::Mesh(mesh) = core {
+            Some(Self::of_mesh(mesh))
+        } else {
+            (!is_tree(core)).then(|| Self::alone(alone))
         }
     }
 }
@@ -171,52 +163,24 @@ pub(super) enum AnyLeaf {
 }
 
 impl<'a> Growth<'a> {
-    /// `alone`: the piece's bounds.
-    /// None for a map without cells.
+    /// `alone`: the piece's bounds. None for a map without cells.
     pub fn of(piece: &Piece<'a>, alone: &'a Siblings) -> Option<Self> {
-        Some(match piece.shape.core() {
-            Core::PointCloud(cloud) => Self::Cloud(cloud),
-            Core::Voxels(map) => Self::Map(map, map.root()?),
-            Core::HeightField(field) => Self::Field(field),
-            Core::Mesh(mesh) => Self::Branches(Branches::of_mesh(mesh)),
-            Core::Point
-            | Core::Cuboid { .. }
-            | Core::AxialSegment { .. }
-            | Core::Cylinder { .. }
-            | Core::Cone { .. }
-            | Core::Ellipsoid { .. }
-            | Core::Convex(_)
-            | Core::Triangle(_)
-            | Core::Segment(_)
-            | Core::HalfSpace { .. }
-            | Core::Plane { .. }
-            | Core::Compound(_)
-            | Core::Column(_)
-            | Core::Block(_) => Self::Branches(Branches { nodes: Nodes::alone(alone), mesh: None }),
-        })
+        let core = piece.shape.core();
+        if is_tree(core) { Self::of_core(core) } else { Some(Self::Branches(Branches::alone(alone))) }
     }
 
-    /// The tree of a core that is made of many; none of one that is a leaf of its own.
+    /// The tree of a core that is made of many; none of one that is a leaf of its own, and of a map without cells.
     pub fn of_core(core: &'a Core) -> Option<Self> {
-        match core {
-            Core::PointCloud(cloud) => Some(Self::Cloud(cloud)),
-            Core::Voxels(map) => Some(Self::Map(map, map.root()?)),
-            Core::HeightField(field) => Some(Self::Field(field)),
-            Core::Mesh(mesh) => Some(Self::Branches(Branches::of_mesh(mesh))),
-            Core::Point
-            | Core::Cuboid { .. }
-            | Core::AxialSegment { .. }
-            | Core::Cylinder { .. }
-            | Core::Cone { .. }
-            | Core::Ellipsoid { .. }
-            | Core::Convex(_)
-            | Core::Triangle(_)
-            | Core::Segment(_)
-            | Core::HalfSpace { .. }
-            | Core::Plane { .. }
-            | Core::Compound(_)
-            | Core::Column(_)
-            | Core::Block(_) => None,
+        if let Core::Mesh(mesh) = core {
+            Some(Self::Branches(Branches::of_mesh(mesh)))
+        } else if let Core::PointCloud(cloud) = core {
+            Some(Self::Cloud(cloud))
+        } else if let Core::HeightField(field) = core {
+            Some(Self::Field(field))
+        } else if let Core::Voxels(map) = core {
+            map.root().map(|cells| Self::Map(map, cells))
+        } else {
+            None
         }
     }
 

@@ -216,25 +216,10 @@ impl Snapshot {
 }
 
 fn voxels_of(body: &Body) -> Result<&Voxels, Fault> {
-    match body.shape.core() {
-        Core::Voxels(map) => Ok(map),
-        Core::Point
-        | Core::Cuboid { .. }
-        | Core::AxialSegment { .. }
-        | Core::Cylinder { .. }
-        | Core::Cone { .. }
-        | Core::Ellipsoid { .. }
-        | Core::Convex(_)
-        | Core::Triangle(_)
-        | Core::Segment(_)
-        | Core::HalfSpace { .. }
-        | Core::Plane { .. }
-        | Core::Mesh(_)
-        | Core::Compound(_)
-        | Core::HeightField(_)
-        | Core::PointCloud(_)
-        | Core::Column(_)
-        | Core::Block(_) => Err(Reason::NotVoxels { kind: body.shape.kind() }.of("body")),
+    if let Core::Voxels(map) = body.shape.core() {
+        Ok(map)
+    } else {
+        Err(Reason::NotVoxels { kind: body.shape.kind() }.of("body"))
     }
 }
 
