@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use arc_swap::ArcSwap;
 
 use super::ServiceError;
-use super::revision_rule::{Kept, Rule};
+use super::revision_rule::{Found, Kept, Rule};
 use crate::scene::{Revision, Snapshot};
 
 /// The revisions of a scene that can be asked.
@@ -27,10 +27,6 @@ impl Published {
         Arc::clone(self.kept.load().latest())
     }
 
-    pub fn oldest_revision(&self) -> Revision {
-        self.kept.load().oldest().revision()
-    }
-
     /// All that can be asked, as it is now.
     pub fn all(&self) -> Arc<Kept> {
         self.kept.load_full()
@@ -40,8 +36,8 @@ impl Published {
     ///
     /// # Errors
     /// It is gone.
-    pub fn find(&self, rule: Rule) -> Result<Option<Arc<Snapshot>>, ServiceError> {
-        Ok(self.kept.load().find(rule)?.cloned())
+    pub fn find(&self, rule: Rule) -> Result<Option<Found>, ServiceError> {
+        self.kept.load().find(rule)
     }
 
     /// Whether the scene is gone.

@@ -27,6 +27,14 @@ pub struct RevisionRule {
     pub rule: Rule,
 }
 
+/// What fits a rule, and what could be asked at the same instant.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    pub snapshot: Arc<Snapshot>,
+    /// Never later than the snapshot.
+    pub oldest: Revision,
+}
+
 /// The revisions that can be asked, oldest first. Never empty.
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
@@ -64,18 +72,14 @@ impl Kept {
     ///
     /// # Errors
     /// It is gone.
-    pub fn find(&self, rule: Rule) -> Result<Option<&Arc<Snapshot>>, ServiceError> {
-        let latest = self.latest();
-        match rule {
-            Rule::Latest => Ok(Some(latest)),
-            Rule::AtLeast(asked) => Ok((latest.revision() >= asked).then_some(latest)),
-            Rule::Exactly(asked) => {
-                let oldest = self.oldest().revision();
-                if asked < oldest {
-                    return Err(ServiceError::RevisionGone { asked, oldest });
-                }
-                Ok(self.snapshots.iter().find(|snapshot| snapshot.revision() == asked))
-            }
-        }
+    pub fn find(&self, rule: Rule) -> Result<Option<Found>, ServiceError> {
+        let (latest, oldest) = (self.latest(), self.oldest().revision());
+        let snapshot = match rule {
+            Rule::Latest => Some(latest),
+            Rule::AtLeast(asked) => (latest.revision() >= asked).then_some(latest),
+            Rule::Exactly(asked) if asked < oldest => return Err(ServiceError::RevisionGone { asked, oldest }),
+            Rule::Exactly(asked) => self.snapshots.iter().find(|snapshot| snapshot.revision() == asked),
+        };
+        Ok(snapshot.map(|snapshot| Found { snapshot: Arc::clone(snapshot), oldest }))
     }
 }

@@ -12,7 +12,7 @@ use super::admission::{Admission, Permit};
 use super::deadline::{Deadline, Stop};
 use super::published::Published;
 use super::remembered_keys::{IdempotencyKey, RememberedKeys};
-use super::revision_rule::{RevisionRule, Rule};
+use super::revision_rule::{Found, RevisionRule, Rule};
 use super::scene_health::SceneHealth;
 use super::scenes::SceneSummary;
 use super::{ServiceError, workers};
@@ -92,10 +92,6 @@ impl SceneCell {
         self.published.latest()
     }
 
-    pub fn oldest_revision(&self) -> Revision {
-        self.published.oldest_revision()
-    }
-
     /// A place in the queue of changes.
     pub fn queue(&self) -> Result<Permit, ServiceError> {
         Ok(self.queue.enter()?)
@@ -103,16 +99,16 @@ impl SceneCell {
 
     /// The snapshot that fits the rule. One that is there is given at once, without a lock; for one that is still to
     /// come the caller waits.
-    pub async fn snapshot(&self, rule: RevisionRule, deadline: Deadline) -> Result<Arc<Snapshot>, ServiceError> {
+    pub async fn find(&self, rule: RevisionRule, deadline: Deadline) -> Result<Found, ServiceError> {
         self.check_epoch(rule.epoch)?;
-        if let Some(snapshot) = self.at_hand(rule.rule)? {
-            return Ok(snapshot);
+        if let Some(found) = self.at_hand(rule.rule)? {
+            return Ok(found);
         }
         let mut head = self.head.subscribe();
         loop {
             head.mark_unchanged();
-            if let Some(snapshot) = self.at_hand(rule.rule)? {
-                return Ok(snapshot);
+            if let Some(found) = self.at_hand(rule.rule)? {
+                return Ok(found);
             }
             if timeout_at(deadline.at().into(), head.changed()).await.is_err() {
                 return Err(self.not_yet(rule.rule));
@@ -120,7 +116,7 @@ impl SceneCell {
         }
     }
 
-    fn at_hand(&self, rule: Rule) -> Result<Option<Arc<Snapshot>>, ServiceError> {
+    fn at_hand(&self, rule: Rule) -> Result<Option<Found>, ServiceError> {
         if self.published.is_deleted() { Err(self.not_found()) } else { self.published.find(rule) }
     }
 
@@ -261,10 +257,11 @@ mod tests {
         let stopped = Arc::clone(&cell.writer).lock_owned().await;
         for _ in 0..1000 {
             for rule in [Rule::Latest, Rule::Exactly(Revision(0)), Rule::AtLeast(Revision(1))] {
-                let snapshot = at_once(cell.snapshot(RevisionRule { epoch: None, rule }, deadline())).unwrap();
-                assert_eq!(snapshot.body_count() as u64, snapshot.revision().0);
+                let found = at_once(cell.find(RevisionRule { epoch: None, rule }, deadline())).unwrap();
+                assert_eq!(found.snapshot.body_count() as u64, found.snapshot.revision().0);
+                assert_eq!(found.oldest, Revision(0));
             }
-            assert_eq!((cell.summary().bodies, cell.oldest_revision()), (1, Revision(0)));
+            assert_eq!(cell.summary().bodies, 1);
         }
         drop(stopped);
         assert_eq!(apply(&cell, vec![Edit::RemoveBody { body: "ball".into() }]).await, Revision(2));
@@ -281,7 +278,7 @@ mod tests {
             assert_eq!(revision, Revision(u64::from(step) + 2));
         }
         // Long gone from the scene, and still what it was.
-        assert!(cell.oldest_revision() > held.revision());
+        assert!(cell.published.all().oldest().revision() > held.revision());
         assert_eq!((held.revision(), held.validate()), (Revision(1), Ok(())));
         assert_eq!(held.body_named("ball").unwrap().pose, Pose::identity());
     }
@@ -290,9 +287,9 @@ mod tests {
     async fn a_reader_that_waits_is_woken_by_the_revision_and_by_the_end() {
         let cell = cell();
         let rule = |asked| RevisionRule { epoch: None, rule: Rule::AtLeast(Revision(asked)) };
-        let (waited, _) = tokio::join!(cell.snapshot(rule(1), deadline()), apply(&cell, vec![ball()]));
-        assert_eq!(waited.unwrap().revision(), Revision(1));
-        let (waited, ()) = tokio::join!(cell.snapshot(rule(9), deadline()), async { cell.delete() });
+        let (waited, _) = tokio::join!(cell.find(rule(1), deadline()), apply(&cell, vec![ball()]));
+        assert_eq!(waited.unwrap().snapshot.revision(), Revision(1));
+        let (waited, ()) = tokio::join!(cell.find(rule(9), deadline()), async { cell.delete() });
         assert!(matches!(waited, Err(ServiceError::NotFound { .. })), "{waited:?}");
     }
 }

@@ -22,7 +22,7 @@ use super::view::View;
 use super::workers::{Workers, prepare};
 use crate::limits::Limits;
 use crate::query::ContactQuestion;
-use crate::scene::{Applied, Epoch, Revision, SceneOptions, Snapshot};
+use crate::scene::{Applied, Epoch, SceneOptions, Snapshot};
 
 /// What a service is made with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -173,14 +173,6 @@ impl Service {
         self.scenes.delete(name)
     }
 
-    /// The oldest revision of a scene that can be asked.
-    ///
-    /// # Errors
-    /// The scene is not there.
-    pub fn oldest_revision(&self, scene: &str) -> Result<Revision, ServiceError> {
-        Ok(self.scenes.get(scene)?.oldest_revision())
-    }
-
     /// How a scene is. Worked out on the threads that answer questions: it looks at all of the scene.
     ///
     /// # Errors
@@ -287,9 +279,9 @@ impl Service {
         self.check_open()?;
         let permit = self.queries.enter()?;
         let deadline = self.deadline(patience)?;
-        let snapshot = self.scenes.get(&target.scene)?.snapshot(target.revision, deadline).await?;
+        let found = self.scenes.get(&target.scene)?.find(target.revision, deadline).await?;
         let (stop, _waiting) = Stop::at(deadline);
-        let view = View::new(snapshot, stop.clone(), &self.limits);
+        let view = View::new(found, stop.clone(), &self.limits);
         self.workers
             .answer(move || {
                 // Given back only now: a question whose caller is gone keeps its place until its thread is free.
@@ -312,7 +304,7 @@ impl Service {
         self.check_open()?;
         let permit = self.watchers.enter()?;
         let cell = self.scenes.get(&target.scene)?;
-        let first = cell.snapshot(target.revision, self.deadline(patience)?).await?;
+        let first = cell.find(target.revision, self.deadline(patience)?).await?.snapshot;
         let question = question(&first, &self.limits)?;
         Ok(ContactWatch::new(Arc::clone(self), cell, (question, first), patience, permit))
     }

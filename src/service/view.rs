@@ -9,18 +9,19 @@ use rayon::prelude::*;
 
 use super::ServiceError;
 use super::deadline::Stop;
+use super::revision_rule::Found;
 use crate::limits::{LimitExceeded, Limits};
 use crate::query::{
     Answer, Answers, CastItem, CastRays, CastShapes, Casts, CheckMotions, CheckMovingPairs, CheckStates, Clearance,
     ClearanceOf, Context, ItemBatch, MovingPairs, NearestBodies, NearestItem, Neighbours, Overlap, OverlapItem,
     Overlaps, PairQuery, Part, Prepared, Rays, Verdict,
 };
-use crate::scene::Snapshot;
+use crate::scene::{Revision, Snapshot};
 
 /// A snapshot that is being asked. It exists only on the threads that answer questions.
 #[derive(Debug)]
 pub struct View {
-    snapshot: Arc<Snapshot>,
+    found: Found,
     stop: Stop,
     limits: Limits,
 }
@@ -31,21 +32,27 @@ const SMALLEST_PART: usize = 8;
 const PARTS_PER_THREAD: usize = 4;
 
 impl View {
-    pub(super) fn new(snapshot: Arc<Snapshot>, stop: Stop, limits: &Limits) -> Self {
-        Self { snapshot, stop, limits: limits.clone() }
+    pub(super) fn new(found: Found, stop: Stop, limits: &Limits) -> Self {
+        Self { found, stop, limits: limits.clone() }
     }
 
     /// What is asked.
     #[must_use]
     pub fn snapshot(&self) -> &Arc<Snapshot> {
-        &self.snapshot
+        &self.found.snapshot
+    }
+
+    /// The oldest revision that could be asked when the snapshot was looked up; not later than it.
+    #[must_use]
+    pub fn oldest_revision(&self) -> Revision {
+        self.found.oldest
     }
 
     /// # Errors
     /// A cap, a question that cannot be asked, or a deadline that came before any answer.
     pub fn check_states(&self, question: &CheckStates) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
-        self.answer(&Prepared::check_states(&self.snapshot, question)?, &question.context)
+        self.answer(&Prepared::check_states(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
@@ -53,7 +60,7 @@ impl View {
     pub fn check_motions(&self, question: &CheckMotions) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
         LimitExceeded::check("max_motion_states", question.max_states, self.limits.max_motion_states)?;
-        self.answer(&Prepared::check_motions(&self.snapshot, question)?, &question.context)
+        self.answer(&Prepared::check_motions(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
@@ -69,52 +76,52 @@ impl View {
                 &pairs.context
             }
         };
-        self.answer(&Prepared::clearance(&self.snapshot, question)?, context)
+        self.answer(&Prepared::clearance(self.snapshot(), question)?, context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::collide(&self.snapshot, question)?, &question.context)
+        self.answer(&Prepared::collide(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::distance(&self.snapshot, question)?, &question.context)
+        self.answer(&Prepared::distance(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn cast_rays(&self, question: &CastRays) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&Rays::new(&self.snapshot, question)?, &question.context)
+        self.answer_each(&Rays::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn cast_shapes(&self, question: &CastShapes) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&Casts::new(&self.snapshot, question)?, &question.context)
+        self.answer_each(&Casts::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn check_moving_pairs(&self, question: &CheckMovingPairs) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&MovingPairs::new(&self.snapshot, question)?, &question.context)
+        self.answer_each(&MovingPairs::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn overlap(&self, question: &Overlap) -> Result<Answers<OverlapItem>, ServiceError> {
-        self.answer_each(&Overlaps::new(&self.snapshot, question)?, &question.context)
+        self.answer_each(&Overlaps::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn nearest_bodies(&self, question: &NearestBodies) -> Result<Answers<NearestItem>, ServiceError> {
         LimitExceeded::check("max_pairs", question.count, self.limits.max_pairs)?;
-        self.answer_each(&Neighbours::new(&self.snapshot, question)?, &question.context)
+        self.answer_each(&Neighbours::new(self.snapshot(), question)?, &question.context)
     }
 
     fn answer_each<B: ItemBatch>(&self, batch: &B, context: &Context) -> Result<Answers<B::Item>, ServiceError> {

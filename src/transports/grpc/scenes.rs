@@ -63,10 +63,10 @@ impl Handlers {
         let revision = from_proto::revision_rule(message.revision.as_ref());
         let page = from_proto::body_page(&message, self.service.limits())?;
         let target = Target { scene: message.scene, revision };
-        let oldest = self.service.oldest_revision(&target.scene)?;
         let (name, robots) = (target.scene.clone(), Arc::clone(self.service.robots()));
         let patience = Patience { timeout, time_budget: None };
         let question = self.service.ask(&target, patience, move |view| {
+            let oldest = view.oldest_revision();
             let contents = to_proto::scene_contents(&name, view.snapshot(), oldest, &robots, page);
             Ok(v1::GetSceneResponse { scene: Some(contents) })
         });

@@ -12,6 +12,7 @@ use crate::support::messages::*;
 through_every_door!(
     an_earlier_revision_answers_as_it_was,
     a_revision_to_come_is_waited_for,
+    the_oldest_revision_told_is_of_the_same_moment_as_the_contents,
     a_revision_that_never_comes_is_unavailable,
     a_revision_that_is_gone_is_out_of_range,
     pairs_changed_since_a_revision_are_told_as_far_as_it_is_kept,
@@ -64,6 +65,25 @@ async fn a_revision_to_come_is_waited_for(door: &impl Door) {
         let answer = answer.unwrap();
         assert_eq!((answer.revision, verdicts(&answer)), (changed.revision, vec![v1::Verdict::Collision]));
     }
+}
+
+/// It was looked up before the wait once, and told revisions that were gone.
+async fn the_oldest_revision_told_is_of_the_same_moment_as_the_contents(door: &impl Door) {
+    two_revisions(door).await;
+    let contents = v1::GetSceneRequest {
+        scene: SCENE.to_owned(),
+        revision: Some(v1::RevisionRule { epoch: None, rule: Some(Rule::AtLeast(9)) }),
+        ..v1::GetSceneRequest::default()
+    };
+    let changes = async {
+        tokio::time::sleep(std::time::Duration::from_millis(50)).await;
+        for x in 3..=9 {
+            door.apply(apply(vec![move_to(named("ball"), at(f64::from(x), 0.0, 0.0))])).await.unwrap();
+        }
+    };
+    let (contents, ()) = tokio::join!(door.get_scene(contents), changes);
+    let contents = contents.unwrap();
+    assert_eq!((contents.revision, contents.oldest_revision), (9, 7), "three are kept");
 }
 
 async fn a_revision_that_never_comes_is_unavailable(door: &impl Door) {

@@ -149,10 +149,11 @@ impl Door for InProcess {
         let revision = from_proto::revision_rule(request.revision.as_ref());
         let target = Target { scene: request.scene.clone(), revision };
         let page = from_proto::body_page(&request, self.service.limits())?;
-        let oldest = self.service.oldest_revision(&request.scene)?;
         let robots = Arc::clone(self.service.robots());
-        let contents =
-            move |view: &View| Ok(to_proto::scene_contents(&request.scene, view.snapshot(), oldest, &robots, page));
+        let contents = move |view: &View| {
+            let oldest = view.oldest_revision();
+            Ok(to_proto::scene_contents(&request.scene, view.snapshot(), oldest, &robots, page))
+        };
         Ok(self.service.ask(&target, Patience::default(), contents).await?)
     }
 
