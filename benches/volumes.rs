@@ -61,7 +61,8 @@ fn round_of<V: BoundingVolume + 'static>(around: impl Fn(&OrientedBox) -> V + 's
         let volumes: Vec<V> = bodies.iter().map(&around).collect();
         let moved: Vec<(usize, V)> = moved.iter().map(|(i, to)| (*i, around(to))).collect();
         let begun = Instant::now();
-        let (mut tree, names): (DynamicTree<V>, Vec<ProxyId>) = DynamicTree::build(volumes.into_iter().zip(0..));
+        let (mut tree, names): (DynamicTree<V>, Vec<ProxyId>) =
+            DynamicTree::build(volumes.len(), |i| (volumes[i], i as u64));
         let build = begun.elapsed();
         let begun = Instant::now();
         moved.iter().for_each(|(i, volume)| {

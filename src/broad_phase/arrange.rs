@@ -6,11 +6,11 @@
 //! taken in whole leaves, so that leaves come out full. The depth is bounded: a split that would leave a part with more
 //! things than its levels can hold is not made.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
+use super::cells::Cells;
 use super::node::{Entry, Inner, Kid, Leaf};
 use super::places::Places;
 use super::volume::{BoundingVolume, LANES};
@@ -19,20 +19,23 @@ use super::volume::{BoundingVolume, LANES};
 const BINS: usize = 16;
 
 /// Things that are few.
-const FEW: usize = 12;
+const FEW: usize = 64;
 
 /// Up to so many things the best split of all three axes is sought, above it of the axis along which they spread most:
 /// high up in the tree splits hardly differ.
 const ALL_AXES: usize = 512;
 
+/// Entries by their index, wherever they are kept: copying large lists would cost more than asking again.
+pub(super) type Supply<'a, V> = &'a dyn Fn(u32) -> Entry<V>;
+
 /// What is to be grouped.
 pub(super) enum Stock<'a, V: BoundingVolume> {
     /// Into leaves of up to eight.
-    Entries(&'a [Entry<V>]),
+    Entries(Supply<'a, V>),
     /// Under inner nodes.
     Nodes(&'a mut [Option<Kid<V>>]),
-    /// Under inner nodes, the entries of each cell for themselves: where they stand among all items, and those.
-    Cells(&'a [Range<usize>], &'a mut [Item<V>], &'a [Entry<V>]),
+    /// Under inner nodes, the entries of each cell for themselves.
+    Cells(&'a Cells<V>, Supply<'a, V>),
 }
 
 /// One thing: its bound, where that is, and its index in the stock.
@@ -44,14 +47,6 @@ pub(super) struct Item<V: BoundingVolume> {
 }
 
 impl<V: BoundingVolume> Item<V> {
-    pub(super) fn centre(&self) -> [f32; 3] {
-        self.centre
-    }
-
-    pub(super) fn bound(&self) -> &V::Bound {
-        &self.bound
-    }
-
     pub(super) fn new(bound: V::Bound, index: u32) -> Self {
         Self { bound, centre: V::centre(&bound), index }
     }
@@ -70,6 +65,14 @@ pub(super) struct Arranger<'a, V: BoundingVolume> {
     pub(super) places: &'a mut Places,
     /// Where the leaf of each slot is noted; nowhere but in `places` if there is no list.
     pub(super) homes: Option<&'a mut Vec<u32>>,
+}
+
+/// Some of the entries, as things to be grouped.
+pub(super) fn items_of<V: BoundingVolume>(
+    entries: Supply<'_, V>,
+    indices: impl IntoIterator<Item = u32>,
+) -> Vec<Item<V>> {
+    indices.into_iter().map(|index| Item::new(entries(index).volume.bound(), index)).collect()
 }
 
 /// Inner levels that `count` things need, with room for uneven splits.
@@ -114,7 +117,7 @@ impl<V: BoundingVolume> Arranger<'_, V> {
             let room = LANES - (taken - (end - start).div_ceil(most));
             let part = &mut items[start..end];
             let (left, first, second) = match &self.stock {
-                Stock::Cells(cells, ..) => split(part, unit, most, room, |item| cells[item.index as usize].len()),
+                Stock::Cells(cells, _) => split(part, unit, most, room, |item| cells.entries(item.index).len()),
                 Stock::Entries(_) | Stock::Nodes(_) => split(part, unit, most, room, |_| 1),
             };
             parts[worst] = Part { start, end: start + left, bound: first };
@@ -135,7 +138,7 @@ impl<V: BoundingVolume> Arranger<'_, V> {
         match &mut self.stock {
             Stock::Entries(entries) => {
                 let id = self.places.new_node();
-                let own: ArrayVec<Entry<V>, LANES> = items.iter().map(|item| entries[item.index as usize]).collect();
+                let own: ArrayVec<Entry<V>, LANES> = items.iter().map(|item| entries(item.index)).collect();
                 match self.homes.as_deref_mut() {
                     Some(homes) => own.iter().for_each(|entry| homes[entry.slot as usize] = id),
                     None => own.iter().for_each(|entry| self.places.set_leaf(entry.slot, id)),
@@ -143,11 +146,11 @@ impl<V: BoundingVolume> Arranger<'_, V> {
                 Kid::Leaf(Arc::new(Leaf::of(id, &own)))
             }
             Stock::Nodes(nodes) => nodes[items[0].index as usize].take().expect("each node is taken once"),
-            Stock::Cells(cells, all, entries) => {
-                let own = &mut all[cells[items[0].index as usize].clone()];
+            Stock::Cells(cells, entries) => {
+                let mut own = items_of(entries, cells.entries(items[0].index).iter().copied());
                 let levels = roomy_levels(own.len());
                 let homes = self.homes.as_deref_mut();
-                Arranger { stock: Stock::Entries(entries), places: self.places, homes }.arrange(own, levels).0
+                Arranger { stock: Stock::Entries(*entries), places: self.places, homes }.arrange(&mut own, levels).0
             }
         }
     }
@@ -188,7 +191,7 @@ fn sort_along<V: BoundingVolume>(items: &mut [Item<V>], axis: usize) {
     });
 }
 
-pub(super) fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
+fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
     items[1..].iter().fold(items[0].bound, |all, item| V::union(&all, &item.bound))
 }
 
@@ -228,7 +231,7 @@ fn split<V: BoundingVolume>(
     let axes = if count > ALL_AXES { longest..longest + 1 } else { 0..3 };
     // A split makes at most one part more; there are few parts for which that is too many.
     let tight = count.div_ceil(most) >= room;
-    let leaves = |count: usize| (count as u32).div_ceil(unit as u32) as f32;
+    let leaves = |count: usize| ((count + unit - 1) >> unit.trailing_zeros()) as i32 as f32;
     let mut best: Option<Split<V>> = None;
     for axis in axes {
         let scale = (bins as f32 * 0.499_999) / extent(axis);

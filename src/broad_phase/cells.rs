@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::arrange::Item;
+use super::arrange::{Item, Supply};
 use super::volume::BoundingVolume;
 
 /// Entries of a cell on average, if they were spread evenly.
@@ -25,42 +25,72 @@ const LARGE: f32 = 64.0;
 /// Entries of the sample.
 const SAMPLE: usize = 65;
 
-/// Sorts the items by cells: where each cell's are, none of them empty. Nothing if there is no sensible grid.
-pub(super) fn into_cells<V: BoundingVolume>(items: &mut Vec<Item<V>>) -> Option<Vec<Range<usize>>> {
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for item in items.iter() {
-        let centre = item.centre();
-        for axis in 0..3 {
-            low[axis] = if centre[axis] < low[axis] { centre[axis] } else { low[axis] };
-            high[axis] = if centre[axis] > high[axis] { centre[axis] } else { high[axis] };
+/// Entries by cells, none of which is empty.
+pub(super) struct Cells<V: BoundingVolume> {
+    /// Indices of entries, cell by cell.
+    sorted: Vec<u32>,
+    cells: Vec<(Range<usize>, V::Bound)>,
+}
+
+impl<V: BoundingVolume> Cells<V> {
+    /// Entries sorted by cells. Nothing if there is no sensible grid.
+    pub(super) fn of(count: usize, entries: Supply<'_, V>) -> Option<Self> {
+        let bound = |index: u32| entries(index).volume.bound();
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        for index in 0..count as u32 {
+            let centre = V::centre(&bound(index));
+            for axis in 0..3 {
+                low[axis] = if centre[axis] < low[axis] { centre[axis] } else { low[axis] };
+                high[axis] = if centre[axis] > high[axis] { centre[axis] } else { high[axis] };
+            }
         }
+        let counts = cells_along([0, 1, 2].map(|axis| high[axis] - low[axis]), count / EVENLY)?;
+        let scale: [f32; 3] = std::array::from_fn(|axis| match counts[axis] {
+            1 => 0.0,
+            count => count as f32 / (high[axis] - low[axis]),
+        });
+        let large = LARGE * median_cost::<V>((0..count as u32).step_by(count.div_ceil(SAMPLE)).map(bound));
+        let along = |axis: usize, centre: f32| (((centre - low[axis]) * scale[axis]) as usize).min(counts[axis] - 1);
+        let last = counts.iter().product();
+        let cell_of = |bound: &V::Bound| {
+            let [x, y, z] = V::centre(bound);
+            let cell = (along(2, z) * counts[1] + along(1, y)) * counts[0] + along(0, x);
+            if V::cost(bound) > large { last } else { cell }
+        };
+        let mut cells = vec![(0..0, V::nothing()); last + 1];
+        let of: Vec<u32> = (0..count as u32)
+            .map(|index| {
+                let bound = bound(index);
+                let cell = cell_of(&bound);
+                let (range, all) = &mut cells[cell];
+                range.end += 1;
+                *all = V::union(all, &bound);
+                cell as u32
+            })
+            .collect();
+        let mut start = 0;
+        for (range, _) in &mut cells {
+            (start, *range) = (start + range.end, start..start);
+        }
+        let mut sorted = vec![0; count];
+        for (index, cell) in (0..).zip(&of) {
+            let (range, _) = &mut cells[*cell as usize];
+            sorted[range.end] = index;
+            range.end += 1;
+        }
+        cells.retain(|(range, _)| !range.is_empty());
+        Some(Self { sorted, cells })
     }
-    let counts = cells_along([0, 1, 2].map(|axis| high[axis] - low[axis]), items.len() / EVENLY)?;
-    let scale: [f32; 3] =
-        std::array::from_fn(|axis| if counts[axis] > 1 { counts[axis] as f32 / (high[axis] - low[axis]) } else { 0.0 });
-    let large = LARGE * median_cost(items);
-    let along = |axis: usize, centre: f32| (((centre - low[axis]) * scale[axis]) as usize).min(counts[axis] - 1);
-    let last = counts.iter().product();
-    let cell_of = |item: &Item<V>| {
-        let [x, y, z] = item.centre();
-        let cell = (along(2, z) * counts[1] + along(1, y)) * counts[0] + along(0, x);
-        if V::cost(item.bound()) > large { last } else { cell }
-    };
-    let cells: Vec<u32> = items.iter().map(|item| cell_of(item) as u32).collect();
-    let mut starts = vec![0_usize; last + 2];
-    cells.iter().for_each(|cell| starts[*cell as usize + 1] += 1);
-    for cell in 0..=last {
-        starts[cell + 1] += starts[cell];
+
+    /// The cells, as things to be grouped.
+    pub(super) fn items(&self) -> Vec<Item<V>> {
+        (0..).zip(&self.cells).map(|(index, (_, bound))| Item::new(*bound, index)).collect()
     }
-    let ranges = starts.windows(2).map(|ends| ends[0]..ends[1]).filter(|range| !range.is_empty()).collect();
-    let mut sorted = vec![items[0]; items.len()];
-    for (item, cell) in items.iter().zip(&cells) {
-        let place = &mut starts[*cell as usize];
-        sorted[*place] = *item;
-        *place += 1;
+
+    /// The indices of a cell's entries.
+    pub(super) fn entries(&self, cell: u32) -> &[u32] {
+        &self.sorted[self.cells[cell as usize].0.clone()]
     }
-    *items = sorted;
-    Some(ranges)
 }
 
 /// About so many cells, nearly cubes, in a box of these sides.
@@ -83,9 +113,8 @@ fn cells_along(sides: [f32; 3], wanted: usize) -> Option<[usize; 3]> {
     }))
 }
 
-fn median_cost<V: BoundingVolume>(items: &[Item<V>]) -> f32 {
-    let mut costs: Vec<f32> =
-        items.iter().step_by(items.len().div_ceil(SAMPLE)).map(|item| V::cost(item.bound())).collect();
+fn median_cost<V: BoundingVolume>(sample: impl Iterator<Item = V::Bound>) -> f32 {
+    let mut costs: Vec<f32> = sample.map(|bound| V::cost(&bound)).collect();
     let middle = costs.len() / 2;
     *costs.select_nth_unstable_by(middle, f32::total_cmp).1
 }

@@ -1,6 +1,6 @@
 //! How good is the tree just now? Figures that rise when it rots.
 
-use super::node::{Inner, Kid, Leaf};
+use super::node::{Entry, Inner, Kid, Leaf};
 use super::tree::{Change, DynamicTree};
 use super::volume::{BoundingVolume, LANES};
 
@@ -79,7 +79,8 @@ impl<V: BoundingVolume> DynamicTree<V> {
     /// are others.
     #[must_use]
     pub fn rebuilt(&self) -> Self {
-        Self::build(self.iter().map(|(payload, volume)| (volume, payload))).0
+        let entries: Vec<(u64, V)> = self.iter().collect();
+        Self::build(entries.len(), |index| (entries[index].1, entries[index].0)).0
     }
 
     /// Bytes of all nodes and lists, those shared with other versions included.
@@ -88,7 +89,7 @@ impl<V: BoundingVolume> DynamicTree<V> {
         let counts = 2 * size_of::<usize>();
         let leaves = self.leaves().count() * (size_of::<Leaf<V>>() + counts);
         let inner = self.inner_nodes().count() * (size_of::<Inner<V>>() + counts);
-        let waiting = self.waiting.capacity() * size_of::<Change<V>>();
+        let waiting = self.coming.capacity() * size_of::<Entry<V>>() + self.changes.capacity() * size_of::<Change<V>>();
         leaves + inner + waiting + self.places.memory() + size_of::<Self>()
     }
 

@@ -12,7 +12,7 @@ use std::ops::{Add, Mul};
 
 use wide::f32x8;
 
-use super::aabb::{LONGEST_SIDE, down};
+use super::aabb::{LONGEST_SIDE, down, most_of, surely_below, surely_up_to};
 use super::volume::{BoundingVolume, Growth, LANES, Meeting};
 use crate::geometry::{Aabb, Vec3};
 
@@ -112,11 +112,12 @@ pub struct DopLanes<const PAIRS: usize> {
     high: [[f32; LANES]; PAIRS],
 }
 
-/// For each component of a bound the largest value with which it still meets the question.
+/// For each component of a bound (lower ends, then negated upper ones) the largest value with which it may still meet the
+/// question, and with which it does.
 #[derive(Clone, Copy, Debug)]
 pub struct DopProbe<const PAIRS: usize> {
-    low: [f32; PAIRS],
-    high: [f32; PAIRS],
+    most: [[f32; PAIRS]; 2],
+    sure: [[f32; PAIRS]; 2],
 }
 
 /// Half the surface, and a little for the length, of the smallest of up to four boxes: those whose sides are intervals
@@ -164,14 +165,15 @@ impl<const PAIRS: usize> BoundingVolume for KDop<PAIRS> {
     #[inline(always)]
     fn probe(&self) -> DopProbe<PAIRS> {
         // Lower ends are held against the upper ones of the question, and the other way round.
-        DopProbe { low: self.max.map(down), high: self.min.map(|x| down(-x)) }
+        let most = [self.max.map(down), self.min.map(|x| down(-x))];
+        DopProbe { most, sure: most.map(|side| side.map(surely_below)) }
     }
 
     #[inline(always)]
     fn probe_of(bound: &DopBound<PAIRS>) -> DopProbe<PAIRS> {
-        // No lane but an empty one is above the largest number.
-        let most = |x: f32| (-x).min(f32::MAX);
-        DopProbe { low: bound.high.map(most), high: bound.low.map(most) }
+        let opposite = [bound.high, bound.low];
+        let (most, sure) = (most_of, surely_up_to);
+        DopProbe { most: opposite.map(|side| side.map(most)), sure: opposite.map(|side| side.map(sure)) }
     }
 
     #[inline(always)]
@@ -230,16 +232,15 @@ impl<const PAIRS: usize> BoundingVolume for KDop<PAIRS> {
     #[inline(always)]
     fn meeting(lanes: &DopLanes<PAIRS>, probe: &DopProbe<PAIRS>) -> Meeting {
         let mut within = f32x8::splat(f32::from_bits(u32::MAX));
-        let mut equal = f32x8::ZERO;
+        let mut surely = within;
         for i in 0..PAIRS {
-            for (lane, most) in [(lanes.low[i], probe.low[i]), (lanes.high[i], probe.high[i])] {
-                let (lane, most) = (f32x8::from(lane), f32x8::splat(most));
-                within &= lane.simd_le(most);
-                equal |= lane.simd_eq(most);
+            for (side, lane) in [lanes.low[i], lanes.high[i]].into_iter().enumerate() {
+                let lane = f32x8::from(lane);
+                within &= lane.simd_le(f32x8::splat(probe.most[side][i]));
+                surely &= lane.simd_le(f32x8::splat(probe.sure[side][i]));
             }
         }
-        let maybe = within.to_bitmask() as u8;
-        Meeting { maybe, surely: maybe & !(equal.to_bitmask() as u8) }
+        Meeting { maybe: within.to_bitmask() as u8, surely: surely.to_bitmask() as u8 }
     }
 
     #[inline(always)]

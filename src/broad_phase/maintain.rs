@@ -11,7 +11,7 @@ use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::arrange::{Arranger, Item, Stock};
+use super::arrange::{Arranger, Item, Stock, items_of};
 use super::insert::{adopt, tallest};
 use super::node::{Entry, Inner, Kid, Leaf};
 use super::places::Places;
@@ -149,9 +149,9 @@ impl<V: BoundingVolume> Upkeeper<'_, V> {
             entries.select_nth_unstable_by(staying, |a, b| distance(a).total_cmp(&distance(b)));
         }
         let outermost = entries.split_off(staying);
-        let mut items: Vec<Item<V>> =
-            (0..).zip(&entries).map(|(index, entry)| Item::new(entry.volume.bound(), index)).collect();
-        let mut arranger = Arranger { stock: Stock::Entries(&entries), places: self.places, homes: None };
+        let supply = |index: u32| entries[index as usize];
+        let mut items = items_of(&supply, 0..staying as u32);
+        let mut arranger = Arranger { stock: Stock::Entries(&supply), places: self.places, homes: None };
         let (kid, _) = arranger.arrange(&mut items, shared.level + SPARE_LEVELS);
         if kid.level() <= tallest && cost_below(&kid) < shared.kids.iter().map(cost_of).sum() {
             shared.kids.iter().for_each(|kid| free_ids(kid, self.places));

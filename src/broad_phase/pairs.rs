@@ -62,10 +62,10 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
 
     fn within_leaf<V: BoundingVolume>(&mut self, leaf: &Leaf<V>) -> ControlFlow<()> {
         for lane in 0..leaf.entries.len() {
-            let probe = V::probe_of(&V::get(&leaf.lanes, lane));
+            let meeting = V::meeting(&leaf.lanes, &V::probe_of(&V::get(&leaf.lanes, lane)));
             let later = !0_u8 << lane << 1;
-            for other in lanes_of(V::meeting(&leaf.lanes, &probe).maybe & later) {
-                self.report(leaf, lane, leaf, other)?;
+            for other in lanes_of(meeting.maybe & later) {
+                self.report(leaf, lane, leaf, other, meeting.surely >> other & 1 != 0)?;
             }
         }
         ControlFlow::Continue(())
@@ -139,27 +139,34 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
         // Lane by lane on the side that has fewer near the other.
         if near_a.count_ones() <= near_b.count_ones() {
             for lane in lanes_of(near_a) {
-                let probe = V::probe_of(&V::get(&a.lanes, lane));
-                for other in lanes_of(V::meeting(&b.lanes, &probe).maybe & near_b) {
-                    self.report(a, lane, b, other)?;
+                let meeting = V::meeting(&b.lanes, &V::probe_of(&V::get(&a.lanes, lane)));
+                for other in lanes_of(meeting.maybe & near_b) {
+                    self.report(a, lane, b, other, meeting.surely >> other & 1 != 0)?;
                 }
             }
         } else {
             for other in lanes_of(near_b) {
-                let probe = V::probe_of(&V::get(&b.lanes, other));
-                for lane in lanes_of(V::meeting(&a.lanes, &probe).maybe & near_a) {
-                    self.report(a, lane, b, other)?;
+                let meeting = V::meeting(&a.lanes, &V::probe_of(&V::get(&b.lanes, other)));
+                for lane in lanes_of(meeting.maybe & near_a) {
+                    self.report(a, lane, b, other, meeting.surely >> lane & 1 != 0)?;
                 }
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Reports an entry of one leaf and one of another whose bounds meet, if they do.
+    /// Reports an entry of one leaf and one of another whose bounds meet, if they do: surely, or as is to be seen.
     #[inline(always)]
-    fn report<V: BoundingVolume>(&mut self, a: &Leaf<V>, lane: usize, b: &Leaf<V>, other: usize) -> ControlFlow<()> {
+    fn report<V: BoundingVolume>(
+        &mut self,
+        a: &Leaf<V>,
+        lane: usize,
+        b: &Leaf<V>,
+        other: usize,
+        surely: bool,
+    ) -> ControlFlow<()> {
         self.stats.leaves += 1;
-        if a.volumes[lane].overlaps(&b.volumes[other]) {
+        if surely || a.volumes[lane].overlaps(&b.volumes[other]) {
             (self.visit)(a.payloads[lane], b.payloads[other])?;
         }
         ControlFlow::Continue(())

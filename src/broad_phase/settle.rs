@@ -11,8 +11,8 @@ use std::sync::Arc;
 use super::maintain::{MOVE_DEBT, PLACE_DEBT};
 use super::node::{Entry, Inner, Kid, Leaf, lanes_of};
 use super::places::{Place, Places};
-use super::tree::{Change, ChangeKind, DynamicTree};
-use super::volume::BoundingVolume;
+use super::tree::{Change, DynamicTree, TAKEN_BACK};
+use super::volume::{BoundingVolume, LANES};
 
 /// With more than one change in so many entries the whole tree is walked instead of sorting them.
 const MANY: usize = 8;
@@ -51,40 +51,44 @@ struct Pass<'a, V: BoundingVolume> {
 }
 
 /// What became of a node.
-#[derive(Clone, Copy, Default)]
-struct Outcome {
-    /// Its bound may be another one.
+#[derive(Clone, Copy)]
+struct Outcome<V: BoundingVolume> {
+    /// Its bound may be another one: this one, if it is known.
     changed: bool,
+    bound: Option<V::Bound>,
     /// It has lost entries or children.
     shrunk: bool,
+}
+
+impl<V: BoundingVolume> Outcome<V> {
+    fn nothing() -> Self {
+        Self { changed: false, bound: None, shrunk: false }
+    }
 }
 
 impl<V: BoundingVolume> DynamicTree<V> {
     /// Makes the changes that wait.
     pub(super) fn flush(&mut self) {
-        if self.waiting.is_empty() {
+        if self.is_settled() {
             return;
         }
-        let waiting = mem::take(&mut self.waiting);
-        let mut loose = Vec::new();
-        let mut edits = 0;
-        for change in &waiting {
-            match change.kind {
-                ChangeKind::Insert { payload } => {
-                    loose.push(Entry { volume: change.volume, payload, slot: change.slot });
-                }
-                ChangeKind::Move | ChangeKind::Remove => edits += 1,
-                ChangeKind::Nothing => {}
-            }
-        }
-        self.upkeep.owe(edits as f64 * MOVE_DEBT);
-        if edits > 0 {
-            loose.extend(self.change(&waiting, edits));
-            for change in waiting.iter().filter(|change| change.kind == ChangeKind::Remove) {
+        let mut loose = mem::take(&mut self.coming);
+        loose.retain(|entry| entry.slot != TAKEN_BACK);
+        let mut changes = mem::take(&mut self.changes);
+        if !changes.is_empty() {
+            self.upkeep.owe(changes.len() as f64 * MOVE_DEBT);
+            loose.extend(self.change(&changes));
+            for change in changes.iter().filter(|change| change.removed) {
                 self.upkeep.owe(PLACE_DEBT);
                 self.places.free_slot(change.slot);
             }
         }
+        // The list keeps its memory for the next one, if this one needed it: memory touched for the first time is slow.
+        if changes.len() < changes.capacity() / 4 {
+            changes.shrink_to_fit();
+        }
+        changes.clear();
+        self.changes = changes;
         let placed = self.count - loose.len().min(self.count);
         if loose.len() > BULK * placed + 8 {
             self.rearrange_all(loose);
@@ -103,17 +107,16 @@ impl<V: BoundingVolume> DynamicTree<V> {
         }
         self.upkeep.paid_in_full();
         let mut homes = self.places.homes();
-        self.build_over(&entries, &mut homes);
+        self.build_over(entries.len(), &|index| entries[index as usize], &mut homes);
     }
 
     /// Makes the moves and removals, and gives back the entries to be put in anew.
-    fn change(&mut self, changes: &[Change<V>], edits: usize) -> Vec<Entry<V>> {
-        let moving = |change: &&Change<V>| matches!(change.kind, ChangeKind::Move | ChangeKind::Remove);
+    fn change(&mut self, changes: &[Change<V>]) -> Vec<Entry<V>> {
         let mut ways: Vec<(u64, u32)> = Vec::new();
-        let mut many = edits > self.count / MANY;
+        let mut many = changes.len() > self.count / MANY;
         if !many {
-            ways.reserve_exact(edits);
-            for (index, change) in (0..).zip(changes).filter(|(_, change)| moving(change)) {
+            ways.reserve_exact(changes.len());
+            for (index, change) in (0..).zip(changes) {
                 let Place::Leaf(leaf) = self.places.place(change.slot) else { continue };
                 match self.places.path(leaf) {
                     Some(way) => ways.push((way, index)),
@@ -125,7 +128,7 @@ impl<V: BoundingVolume> DynamicTree<V> {
         let mut last = Vec::new();
         if many {
             last = vec![NO_CHANGE; self.places.slot_count()];
-            for (index, change) in (0..).zip(changes).filter(|(_, change)| moving(change)) {
+            for (index, change) in (0..).zip(changes) {
                 last[change.slot as usize] = index;
             }
         }
@@ -159,12 +162,12 @@ impl<V: BoundingVolume> DynamicTree<V> {
 }
 
 impl<V: BoundingVolume> Pass<'_, V> {
-    fn visit(&mut self, kid: &mut Kid<V>, share: Share<'_>) -> Outcome {
+    fn visit(&mut self, kid: &mut Kid<V>, share: Share<'_>) -> Outcome<V> {
         match kid {
             Kid::Leaf(leaf) => self.visit_leaf(leaf, share),
             Kid::Inner(inner) => {
                 let inner = Arc::make_mut(inner);
-                let (mut outcome, mut thin) = (Outcome::default(), 0_u8);
+                let (mut outcome, mut thin) = (Outcome::nothing(), 0_u8);
                 match share {
                     Share::Many(_) => {
                         for lane in 0..inner.kids.len() {
@@ -184,14 +187,14 @@ impl<V: BoundingVolume> Pass<'_, V> {
                 }
                 if thin != 0 {
                     self.thin_out(inner, thin);
-                    outcome = Outcome { changed: true, shrunk: true };
+                    outcome = Outcome { changed: true, bound: None, shrunk: true };
                 }
                 outcome
             }
         }
     }
 
-    fn visit_lane(&mut self, inner: &mut Inner<V>, lane: usize, share: Share<'_>, sum: &mut Outcome, thin: &mut u8) {
+    fn visit_lane(&mut self, inner: &mut Inner<V>, lane: usize, share: Share<'_>, sum: &mut Outcome<V>, thin: &mut u8) {
         let outcome = self.visit(&mut inner.kids[lane], share);
         let kid = &inner.kids[lane];
         let few = match kid {
@@ -203,7 +206,7 @@ impl<V: BoundingVolume> Pass<'_, V> {
             return;
         }
         if outcome.changed {
-            let bound = kid.bound();
+            let bound = outcome.bound.unwrap_or_else(|| kid.bound());
             if bound != V::get(&inner.lanes, lane) {
                 V::put(&mut inner.lanes, lane, &bound);
                 sum.changed = true;
@@ -236,42 +239,49 @@ impl<V: BoundingVolume> Pass<'_, V> {
         }
     }
 
-    fn visit_leaf(&mut self, shared: &mut Arc<Leaf<V>>, share: Share<'_>) -> Outcome {
+    fn visit_leaf(&mut self, shared: &mut Arc<Leaf<V>>, share: Share<'_>) -> Outcome<V> {
         let changes = self.changes;
         let (mut moved, mut gone) = (0_u8, 0_u8);
-        let leaf = match share {
-            Share::Many(last) => {
-                let change_of = |slot: &u32| last[*slot as usize];
-                if shared.entries.iter().all(|slot| change_of(slot) == NO_CHANGE) {
-                    return Outcome::default();
-                }
-                let leaf = Arc::make_mut(shared);
-                for lane in 0..leaf.entries.len() {
-                    let Some(change) = changes.get(change_of(&leaf.entries[lane]) as usize) else { continue };
-                    if change.kind == ChangeKind::Remove {
-                        gone |= 1 << lane;
-                    } else {
-                        moved |= 1 << lane;
-                        leaf.set(lane, &change.volume);
-                    }
-                }
-                leaf
+        let mut make = |leaf: &mut Leaf<V>, lane: usize, change: &Change<V>| {
+            if change.removed {
+                gone |= 1 << lane;
+            } else {
+                moved |= 1 << lane;
+                leaf.set(lane, &change.volume);
             }
+        };
+        let leaf = match share {
             Share::Few(ways, _) => {
                 let leaf = Arc::make_mut(shared);
                 for (_, index) in ways {
                     let change = &changes[*index as usize];
-                    let Some(lane) = leaf.lane_of(change.slot) else { continue };
-                    if change.kind == ChangeKind::Remove {
-                        gone |= 1 << lane;
-                    } else {
-                        moved |= 1 << lane;
-                        leaf.set(lane, &change.volume);
+                    if let Some(lane) = leaf.lane_of(change.slot) {
+                        make(leaf, lane, change);
+                    }
+                }
+                leaf
+            }
+            Share::Many(last) => {
+                let of_lane = |lane| shared.entries.get(lane).map_or(NO_CHANGE, |slot: &u32| last[*slot as usize]);
+                let found: [u32; LANES] = std::array::from_fn(of_lane);
+                if found.iter().all(|index| *index == NO_CHANGE) {
+                    return Outcome::nothing();
+                }
+                let leaf = Arc::make_mut(shared);
+                for (lane, index) in found.iter().enumerate() {
+                    if let Some(change) = changes.get(*index as usize) {
+                        make(leaf, lane, change);
                     }
                 }
                 leaf
             }
         };
+        if gone == 0 {
+            let bound = leaf.bound();
+            if V::cost(&bound) <= LARGEST_STRETCH * leaf.arranged {
+                return Outcome { changed: true, bound: Some(bound), shrunk: false };
+            }
+        }
         let mut going = gone;
         if gone.count_ones() as usize != leaf.entries.len() {
             going |= overstretching(leaf, moved, gone);
@@ -282,7 +292,7 @@ impl<V: BoundingVolume> Pass<'_, V> {
                 self.loose.push(entry);
             }
         }
-        Outcome { changed: true, shrunk: going != 0 }
+        Outcome { changed: true, bound: None, shrunk: going != 0 }
     }
 }
 
@@ -291,9 +301,6 @@ impl<V: BoundingVolume> Pass<'_, V> {
 fn overstretching<V: BoundingVolume>(leaf: &Leaf<V>, moved: u8, gone: u8) -> u8 {
     let of = |lane: usize| V::get(&leaf.lanes, lane);
     let limit = LARGEST_STRETCH * leaf.arranged;
-    if gone == 0 && V::cost(&leaf.bound()) <= limit {
-        return 0;
-    }
     let there = (((1_u32 << leaf.entries.len()) - 1) as u8) & !gone;
     let mut outside = moved & there;
     let mut inside = lanes_of(there & !moved).map(of).reduce(|a, b| V::union(&a, &b));

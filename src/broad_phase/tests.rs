@@ -136,7 +136,7 @@ impl Compared {
                 reached.overlaps += expected.len();
                 assert_eq!(found, expected);
                 assert!(stats.leaves >= found.len() as u64 && 8 * stats.nodes >= stats.leaves);
-                reached.asked_unsettled += usize::from(!self.tree.waiting.is_empty());
+                reached.asked_unsettled += usize::from(!self.tree.is_settled());
             }
             Command::Nearest(query, within) => self.check_nearest(query, *within, reached),
             Command::Cast(start, motion, within) => {
@@ -154,7 +154,7 @@ impl Compared {
     fn move_to(&mut self, key: u64, aabb: Aabb, reached: &mut Reached) {
         let entry = self.expected.get_mut(&key).unwrap();
         entry.1 = aabb;
-        reached.moved_unsettled += usize::from(!self.tree.waiting.is_empty());
+        reached.moved_unsettled += usize::from(!self.tree.is_settled());
         self.tree.move_to(entry.0, aabb);
         assert_eq!((self.tree.tight(entry.0), self.tree.payload(entry.0)), (aabb, key));
     }

@@ -25,42 +25,43 @@ pub struct ProxyId(pub(super) u32);
 pub struct DynamicTree<V: BoundingVolume = Aabb> {
     pub(super) root: Option<Kid<V>>,
     pub(super) places: Places,
-    /// Changes not made yet, in their order.
-    pub(super) waiting: Vec<Change<V>>,
+    /// Entries that are not in the tree yet.
+    pub(super) coming: Vec<Entry<V>>,
+    /// Moves and removals of entries in it that were not made yet, in their order.
+    pub(super) changes: Vec<Change<V>>,
     pub(super) count: usize,
     pub(super) upkeep: Upkeep,
 }
 
-/// What is to become of a slot.
+/// What is to become of an entry in the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change<V> {
     pub(super) volume: V,
     pub(super) slot: u32,
-    pub(super) kind: ChangeKind,
+    pub(super) removed: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum ChangeKind {
-    Insert {
-        payload: u64,
-    },
-    Move,
-    Remove,
-    /// An insertion that was taken back.
-    Nothing,
-}
+/// In place of the slot of an entry that was taken back before it came into the tree.
+pub(super) const TAKEN_BACK: u32 = u32::MAX;
 
 impl<V: BoundingVolume> DynamicTree<V> {
     /// A tree without entries.
     #[must_use]
     pub fn new() -> Self {
-        Self { root: None, places: Places::new(), waiting: Vec::new(), count: 0, upkeep: Upkeep::default() }
+        Self {
+            root: None,
+            places: Places::new(),
+            coming: Vec::new(),
+            changes: Vec::new(),
+            count: 0,
+            upkeep: Upkeep::default(),
+        }
     }
 
     /// Adds an entry: a volume, metres, and the caller's number for it.
     pub fn insert(&mut self, volume: V, payload: u64) -> ProxyId {
-        let slot = self.places.new_slot(self.waiting.len());
-        self.waiting.push(Change { volume, slot, kind: ChangeKind::Insert { payload } });
+        let slot = self.places.new_slot(self.coming.len());
+        self.coming.push(Entry { volume, payload, slot });
         self.count += 1;
         ProxyId(slot)
     }
@@ -70,15 +71,15 @@ impl<V: BoundingVolume> DynamicTree<V> {
         self.count -= 1;
         match self.places.place(proxy.0) {
             Place::Waiting(index) => {
-                self.waiting[index as usize].kind = ChangeKind::Nothing;
+                self.coming[index as usize].slot = TAKEN_BACK;
                 self.places.free_slot(proxy.0);
             }
             Place::Leaf(_) => {
-                let volume = match self.waiting.last() {
+                let volume = match self.changes.last() {
                     Some(change) => change.volume,
                     None => self.tight(proxy),
                 };
-                self.waiting.push(Change { volume, slot: proxy.0, kind: ChangeKind::Remove });
+                self.changes.push(Change { volume, slot: proxy.0, removed: true });
             }
             Place::Free => unreachable!("an entry is removed once"),
         }
@@ -87,8 +88,8 @@ impl<V: BoundingVolume> DynamicTree<V> {
     /// Gives an entry another volume, metres. Says whether the tree has to change for it.
     pub fn move_to(&mut self, proxy: ProxyId, volume: V) -> bool {
         match self.places.place(proxy.0) {
-            Place::Waiting(index) => self.waiting[index as usize].volume = volume,
-            Place::Leaf(_) => self.waiting.push(Change { volume, slot: proxy.0, kind: ChangeKind::Move }),
+            Place::Waiting(index) => self.coming[index as usize].volume = volume,
+            Place::Leaf(_) => self.changes.push(Change { volume, slot: proxy.0, removed: false }),
             Place::Free => unreachable!("an entry that is gone does not move"),
         }
         true
@@ -101,9 +102,13 @@ impl<V: BoundingVolume> DynamicTree<V> {
         self.maintain();
     }
 
+    pub(super) fn is_settled(&self) -> bool {
+        self.coming.is_empty() && self.changes.is_empty()
+    }
+
     /// This tree with its changes made.
     pub(super) fn settled(&self) -> Cow<'_, Self> {
-        if self.waiting.is_empty() {
+        if self.is_settled() {
             return Cow::Borrowed(self);
         }
         let mut settled = self.clone();
@@ -126,38 +131,32 @@ impl<V: BoundingVolume> DynamicTree<V> {
     /// The volume of an entry, as it was given last.
     #[must_use]
     pub fn tight(&self, proxy: ProxyId) -> V {
-        let changed = self.waiting.iter().rev().find(|change| change.slot == proxy.0);
+        if let Place::Waiting(index) = self.places.place(proxy.0) {
+            return self.coming[index as usize].volume;
+        }
+        let changed = self.changes.iter().rev().find(|change| change.slot == proxy.0);
         changed.map_or_else(|| self.placed(proxy).volume, |change| change.volume)
     }
 
     /// The number of an entry.
     #[must_use]
     pub fn payload(&self, proxy: ProxyId) -> u64 {
-        if let Place::Waiting(index) = self.places.place(proxy.0)
-            && let ChangeKind::Insert { payload } = self.waiting[index as usize].kind
-        {
-            return payload;
+        match self.places.place(proxy.0) {
+            Place::Waiting(index) => self.coming[index as usize].payload,
+            Place::Leaf(_) | Place::Free => self.placed(proxy).payload,
         }
-        self.placed(proxy).payload
     }
 
     /// All entries, in no order that means anything: number and volume as it was given last.
     pub fn iter(&self) -> impl Iterator<Item = (u64, V)> + '_ {
-        let mut changed: BTreeMap<u32, &Change<V>> = BTreeMap::new();
-        let mut added = Vec::new();
-        for change in &self.waiting {
-            match change.kind {
-                ChangeKind::Insert { payload } => added.push((payload, change.volume)),
-                ChangeKind::Move | ChangeKind::Remove => drop(changed.insert(change.slot, change)),
-                ChangeKind::Nothing => {}
-            }
-        }
+        let changed: BTreeMap<u32, &Change<V>> = self.changes.iter().map(|change| (change.slot, change)).collect();
+        let coming = self.coming.iter().filter(|entry| entry.slot != TAKEN_BACK);
         let placed = self.leaves().flat_map(Leaf::all).filter_map(move |entry| match changed.get(&entry.slot) {
             None => Some((entry.payload, entry.volume)),
-            Some(change) if change.kind == ChangeKind::Remove => None,
+            Some(change) if change.removed => None,
             Some(change) => Some((entry.payload, change.volume)),
         });
-        added.into_iter().chain(placed)
+        coming.map(|entry| (entry.payload, entry.volume)).chain(placed)
     }
 
     /// All leaves in the order of the tree.

@@ -40,7 +40,8 @@ pub trait BoundingVolume: Copy + PartialEq + Debug {
     fn overlaps(&self, other: &Self) -> bool;
     /// The volume as a question.
     fn probe(&self) -> Self::Probe;
-    /// A bound as a question: whatever meets something within the bound is among the lanes that may meet it.
+    /// A bound as a question: whatever meets something within the bound is among the lanes that may meet it, and those
+    /// that surely do meet every volume that has this bound.
     fn probe_of(bound: &Self::Bound) -> Self::Probe;
 
     /// The bound that holds nothing: joined with another it gives that other one. Only ever asked for unions.

@@ -28,7 +28,8 @@ fn visited(tree: &DynamicTree, count: usize) -> (u64, u64) {
 /// quarter moves to anywhere, and small moves. Gives the ratios of the nodes visited afterwards to those in a new tree.
 fn wear(count: usize, changes: usize, list: usize) -> (f64, f64) {
     let mut random = Random(5);
-    let (mut tree, mut live) = DynamicTree::build((0..count as u64).map(|i| (random.scattered(count), i)));
+    let boxes: Vec<Aabb> = (0..count).map(|_| random.scattered(count)).collect();
+    let (mut tree, mut live) = DynamicTree::build(count, |i| (boxes[i], i as u64));
     let (mut made, mut next) = (0, count as u64);
     while made < changes {
         for _ in 0..list {
@@ -87,7 +88,7 @@ fn many_small_moves_leave_a_tree_like_a_new_one() {
     let count = 2000_usize;
     let mut random = Random(21);
     let mut boxes: Vec<Aabb> = (0..count).map(|_| random.scattered(count)).collect();
-    let (mut tree, names) = DynamicTree::build(boxes.iter().copied().zip(0..));
+    let (mut tree, names) = DynamicTree::build(boxes.len(), |i| (boxes[i], i as u64));
     // Each box goes its own way, ten box lengths altogether.
     for _ in 0..100 {
         for (i, (name, aabb)) in (0..).zip(names.iter().zip(&mut boxes)) {
@@ -107,7 +108,8 @@ fn many_small_moves_leave_a_tree_like_a_new_one() {
 fn upkeep_is_bounded_by_the_changes() {
     let count = 5000_usize;
     let mut random = Random(2);
-    let (mut tree, names) = DynamicTree::build((0..count as u64).map(|i| (random.scattered(count), i)));
+    let boxes: Vec<Aabb> = (0..count).map(|_| random.scattered(count)).collect();
+    let (mut tree, names) = DynamicTree::build(count, |i| (boxes[i], i as u64));
     for list in [1_usize, 10, 100, 1000] {
         for _ in 0..20 {
             let before = tree.health();

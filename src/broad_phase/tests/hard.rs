@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 /// Every question about `boxes`, built at once and put in one by one, against looking at all.
 fn check(name: &str, boxes: &[Aabb]) {
-    let (built, _) = DynamicTree::build(boxes.iter().copied().zip(0..));
+    let (built, _) = DynamicTree::build(boxes.len(), |i| (boxes[i], i as u64));
     let mut grown = DynamicTree::new();
     for (i, aabb) in (0..).zip(boxes) {
         grown.insert(*aabb, i);
@@ -148,7 +148,7 @@ fn needles_points_planes_and_floors_lose_nothing() {
 #[test]
 fn no_pair_is_dropped_when_ten_thousand_boxes_overlap_each_other() {
     let count = 10_000_u64;
-    let (tree, _) = DynamicTree::build((0..count).map(|i| (unit_box_at(1e-5 * i as f64, 0.0, 0.0), i)));
+    let (tree, _) = DynamicTree::build(count as usize, |i| (unit_box_at(1e-5 * i as f64, 0.0, 0.0), i as u64));
     let (mut pairs, mut sum) = (0_u64, 0_u64);
     let stats = tree.self_pairs(|a, b| {
         pairs += 1;
@@ -211,7 +211,7 @@ fn a_floor_does_not_spoil_questions_about_what_stands_on_it() {
 
 #[test]
 fn a_breaking_visit_and_a_negative_bound_end_the_work() {
-    let (tree, _) = DynamicTree::build((0..20).map(|i| (unit_box_at(0.0, 0.0, 0.0), i)));
+    let (tree, _) = DynamicTree::build(20, |i| (unit_box_at(0.0, 0.0, 0.0), i as u64));
     let mut visits = 0;
     let mut once = || {
         visits += 1;

@@ -92,7 +92,7 @@ fn bounds_hold_their_volumes_and_unions_hold_both() {
 /// Eight lanes, some of them empty, asked by a volume and by a bound of several.
 fn no_meeting_is_missed<V: Tested>(nearly_parallel: bool) {
     let mut random = Random(37);
-    let (mut met, mut surely, mut ruled_out, mut empty) = (0, 0, 0, 0);
+    let (mut met, mut surely, mut sure_by_bound, mut ruled_out, mut empty) = (0, 0, 0, 0, 0);
     for round in 0..4000 {
         let scale = [1.0, 1e-3, 1e-42, 1e33, 1e38][round % 5];
         let frame = random.frame();
@@ -125,7 +125,10 @@ fn no_meeting_is_missed<V: Tested>(nearly_parallel: bool) {
         assert_eq!(by_union & !held, 0);
         for query in &asked {
             let meeting = V::meeting(&lanes, &query.probe());
-            assert_eq!((meeting.maybe & !held, meeting.surely & !meeting.maybe), (0, 0));
+            let by_bound = V::meeting(&lanes, &V::probe_of(&query.bound()));
+            for meeting in [&meeting, &by_bound] {
+                assert_eq!((meeting.maybe & !held, meeting.surely & !meeting.maybe), (0, 0));
+            }
             for lane in 0..LANES {
                 if held >> lane & 1 == 0 {
                     empty += 1;
@@ -137,6 +140,9 @@ fn no_meeting_is_missed<V: Tested>(nearly_parallel: bool) {
                     [meeting.maybe, meeting.surely, by_union].map(|mask| mask >> lane & 1 != 0);
                 assert!(!overlap || (maybe && by_union), "{query:?} and {:?}", volumes[lane]);
                 assert!(!sure || overlap);
+                assert!(by_bound.surely >> lane & 1 == 0 || overlap, "{query:?} and {:?}", volumes[lane]);
+                assert!(!overlap || by_bound.maybe >> lane & 1 != 0);
+                sure_by_bound += usize::from(by_bound.surely >> lane & 1 != 0);
                 met += usize::from(overlap);
                 surely += usize::from(sure);
                 ruled_out += usize::from(!maybe);
@@ -148,7 +154,7 @@ fn no_meeting_is_missed<V: Tested>(nearly_parallel: bool) {
     }
     // Turned boxes are never sure, polytopes nearly always.
     let by_intervals = size_of::<V>() != size_of::<OrientedBox>();
-    assert_eq!(surely > 0, by_intervals, "{surely}");
+    assert_eq!((surely > 0, sure_by_bound > 0), (by_intervals, by_intervals), "{surely}, {sure_by_bound}");
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn what_a_change_copies_is_in_proportion_to_it_and_not_to_the_tree() {
     for count in [4_000_usize, 64_000] {
         let mut random = Random(9);
         let boxes: Vec<Aabb> = (0..count).map(|_| random.scattered(count)).collect();
-        let (mut tree, names) = DynamicTree::build(boxes.iter().copied().zip(0..));
+        let (mut tree, names) = DynamicTree::build(boxes.len(), |i| (boxes[i], i as u64));
         for moves in [1, 10, 100] {
             let before = tree.clone();
             for _ in 0..moves {
@@ -104,7 +104,7 @@ fn what_a_change_copies_is_in_proportion_to_it_and_not_to_the_tree() {
 #[test]
 fn moving_one_box_leaves_the_places_of_all_others_shared() {
     let (mut tree, names) =
-        DynamicTree::build((0..4000_i32).map(|i| (unit_box_at(f64::from(i % 63), f64::from(i / 63), 0.0), i as u64)));
+        DynamicTree::build(4000, |i| (unit_box_at((i % 63) as f64, (i / 63) as f64, 0.0), i as u64));
     let before = tree.clone();
     tree.move_to(names[1234], unit_box_at(-50.0, 0.0, 0.0));
     tree.settle();

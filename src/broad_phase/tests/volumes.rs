@@ -39,7 +39,8 @@ fn changes_agree_with_brute_force<V: BoundingVolume>(mut some: impl FnMut(&mut R
         }
         tree.settle();
         assert_eq!((tree.validate(), tree.len()), (Ok(()), expected.len()));
-        let (rebuilt, _) = DynamicTree::build(expected.iter().map(|(key, (_, volume))| (*volume, *key)));
+        let all: Vec<(V, u64)> = expected.iter().map(|(key, (_, volume))| (*volume, *key)).collect();
+        let (rebuilt, _) = DynamicTree::build(all.len(), |i| all[i]);
         assert_eq!(rebuilt.validate(), Ok(()));
         for tree in [&tree, &rebuilt] {
             let query = some(&mut random);
@@ -166,7 +167,7 @@ fn a_polytope_of_three_pairs_is_an_upright_box() {
 fn all_meet<V: BoundingVolume>(count: u64, mut some: impl FnMut(&mut Random) -> V) {
     let mut random = Random(23);
     let volumes: Vec<V> = (0..count).map(|_| some(&mut random)).collect();
-    let (built, _) = DynamicTree::build(volumes.iter().copied().zip(0..));
+    let (built, _) = DynamicTree::build(volumes.len(), |i| (volumes[i], i as u64));
     let mut grown = DynamicTree::new();
     for (i, volume) in (0..).zip(&volumes) {
         grown.insert(*volume, i);

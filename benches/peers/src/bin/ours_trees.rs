@@ -55,7 +55,7 @@ impl Trees for Ours {
     }
 
     fn build(config: &str, boxes: &[Aabb]) -> Kept {
-        let (tree, entries) = DynamicTree::build(boxes.iter().copied().zip(0..));
+        let (tree, entries) = DynamicTree::build(boxes.len(), |i| (boxes[i], i as u64));
         let published = (config == "published").then(|| tree.clone());
         Kept { tree, entries, published }
     }
