@@ -196,14 +196,11 @@ fn joined<V: BoundingVolume>(items: &[Item<V>]) -> V::Bound {
 }
 
 /// A way to divide a part: at the lower edge of a bin of an axis.
-struct Split<V: BoundingVolume> {
+#[derive(Clone, Copy)]
+struct Split {
     price: f32,
     axis: usize,
     edge: usize,
-    /// Things on the first side.
-    left: usize,
-    first: V::Bound,
-    second: V::Bound,
 }
 
 /// Reorders the items and says how many go to the first side, and what holds either side. Each side's number of parts of
@@ -232,9 +229,10 @@ fn split<V: BoundingVolume>(
     // A split makes at most one part more; there are few parts for which that is too many.
     let tight = count.div_ceil(most) >= room;
     let leaves = |count: usize| ((count + unit - 1) >> unit.trailing_zeros()) as i32 as f32;
-    let mut best: Option<Split<V>> = None;
+    let scale_of = |axis: usize| (bins as f32 * 0.499_999) / extent(axis);
+    let mut best = Split { price: f32::INFINITY, axis: longest, edge: 0 };
     for axis in axes {
-        let scale = (bins as f32 * 0.499_999) / extent(axis);
+        let scale = scale_of(axis);
         if !(scale.is_finite() && extent(axis) > 0.0) {
             continue;
         }
@@ -246,11 +244,14 @@ fn split<V: BoundingVolume>(
             weights[bin] += weight(item);
             bounds[bin] = V::union(&bounds[bin], &item.bound);
         }
-        let mut after = bounds;
-        for i in (1..bins - 1).rev() {
-            after[i] = V::union(&after[i], &after[i + 1]);
+        // What the second side costs if it begins with each bin; then the first side grows bin by bin.
+        let mut dear = [0.0; BINS];
+        let (mut second, mut heavier) = (V::nothing(), 0);
+        for edge in (1..bins).rev() {
+            second = V::union(&second, &bounds[edge]);
+            heavier += weights[edge];
+            dear[edge] = V::cost(&second) * leaves(heavier);
         }
-        let whole: usize = weights.iter().sum();
         let (mut left, mut lighter, mut first) = (0, 0, V::nothing());
         for edge in 1..bins {
             left += counts[edge - 1];
@@ -260,15 +261,17 @@ fn split<V: BoundingVolume>(
             if left == 0 || right == 0 || tight && left.div_ceil(most) + right.div_ceil(most) > room {
                 continue;
             }
-            let second = after[edge];
-            let price = V::cost(&first) * leaves(lighter) + V::cost(&second) * leaves(whole - lighter);
-            if best.as_ref().is_none_or(|best| price < best.price) {
-                best = Some(Split { price, axis, edge, left, first, second });
+            let price = V::cost(&first) * leaves(lighter) + dear[edge];
+            if best.edge == 0 || price < best.price {
+                best = Split { price, axis, edge };
             }
         }
     }
-    let Some(Split { axis, edge, left, first, second, .. }) = best else { return cut::<V>(items, unit, most, longest) };
-    let scale = (bins as f32 * 0.499_999) / extent(axis);
+    let Split { axis, edge, .. } = best;
+    if edge == 0 {
+        return cut::<V>(items, unit, most, longest);
+    }
+    let scale = scale_of(axis);
     let first_side = |item: &Item<V>| (item.centre[axis] - low[axis]) * scale < edge as f32;
     let (mut front, mut back) = (0, count);
     loop {
@@ -285,8 +288,8 @@ fn split<V: BoundingVolume>(
         items.swap(front, back);
         front += 1;
     }
-    debug_assert_eq!(front, left, "items fall into the same bins again");
-    (left, first, second)
+    let (first, second) = items.split_at(front);
+    (front, joined(first), joined(second))
 }
 
 /// Cuts in two full parts where no split between bins will do: all centres equal, or too little room.

@@ -80,18 +80,12 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
         bound_b: &V::Bound,
     ) -> ControlFlow<()> {
         match (a, b) {
-            (Kid::Leaf(a), Kid::Leaf(b)) => self.between_leaves(a, bound_a, b, bound_b),
+            (Kid::Leaf(a), Kid::Leaf(b)) => self.between_leaves(a, b, bound_b),
             (Kid::Inner(a), Kid::Inner(b)) => {
                 self.stats.nodes += 1;
-                let near_a = V::meeting(&a.lanes, &V::probe_of(bound_b)).maybe;
-                let near_b = V::meeting(&b.lanes, &V::probe_of(bound_a)).maybe;
-                if near_b == 0 {
-                    return ControlFlow::Continue(());
-                }
-                for lane in lanes_of(near_a) {
+                for lane in lanes_of(V::meeting(&a.lanes, &V::probe_of(bound_b)).maybe) {
                     let bound = V::get(&a.lanes, lane);
-                    let meeting = V::meeting(&b.lanes, &V::probe_of(&bound)).maybe & near_b;
-                    for other in lanes_of(meeting) {
+                    for other in lanes_of(V::meeting(&b.lanes, &V::probe_of(&bound)).maybe) {
                         self.between(&a.kids[lane], &bound, &b.kids[other], &V::get(&b.lanes, other))?;
                     }
                 }
@@ -120,36 +114,12 @@ impl<F: FnMut(u64, u64) -> ControlFlow<()>> Walk<F> {
         ControlFlow::Continue(())
     }
 
-    fn between_leaves<V: BoundingVolume>(
-        &mut self,
-        a: &Leaf<V>,
-        bound_a: &V::Bound,
-        b: &Leaf<V>,
-        bound_b: &V::Bound,
-    ) -> ControlFlow<()> {
+    fn between_leaves<V: BoundingVolume>(&mut self, a: &Leaf<V>, b: &Leaf<V>, bound_b: &V::Bound) -> ControlFlow<()> {
         self.stats.nodes += 1;
-        let near_a = V::meeting(&a.lanes, &V::probe_of(bound_b)).maybe;
-        if near_a == 0 {
-            return ControlFlow::Continue(());
-        }
-        let near_b = V::meeting(&b.lanes, &V::probe_of(bound_a)).maybe;
-        if near_b == 0 {
-            return ControlFlow::Continue(());
-        }
-        // Lane by lane on the side that has fewer near the other.
-        if near_a.count_ones() <= near_b.count_ones() {
-            for lane in lanes_of(near_a) {
-                let meeting = V::meeting(&b.lanes, &V::probe_of(&V::get(&a.lanes, lane)));
-                for other in lanes_of(meeting.maybe & near_b) {
-                    self.report(a, lane, b, other, meeting.surely >> other & 1 != 0)?;
-                }
-            }
-        } else {
-            for other in lanes_of(near_b) {
-                let meeting = V::meeting(&a.lanes, &V::probe_of(&V::get(&b.lanes, other)));
-                for lane in lanes_of(meeting.maybe & near_a) {
-                    self.report(a, lane, b, other, meeting.surely >> lane & 1 != 0)?;
-                }
+        for lane in lanes_of(V::meeting(&a.lanes, &V::probe_of(bound_b)).maybe) {
+            let meeting = V::meeting(&b.lanes, &V::probe_of(&V::get(&a.lanes, lane)));
+            for other in lanes_of(meeting.maybe) {
+                self.report(a, lane, b, other, meeting.surely >> other & 1 != 0)?;
             }
         }
         ControlFlow::Continue(())
