@@ -25,9 +25,6 @@ const BOUND_ROUNDING_DOWN: f32 = 1.0 - 8.0 * f32::EPSILON;
 /// Gaps of nodes, metres, that are squared: outside of it squares would under- or overflow.
 const SQUARED_GAPS: std::ops::Range<f32> = 1e-18..1e18;
 
-/// What waits as a rule, so that the heap need not grow.
-const WAITING: usize = 32;
-
 impl DynamicTree {
     /// Walks through the entries whose boxes are within `max_distance` metres of `query`, nearest box first, boxes
     /// equally near in the order of their numbers.
@@ -119,7 +116,6 @@ fn approach<'a>(
 ) {
     let rounded = query.bound();
     let mut stack = NodeStack::starting_with(root);
-    waiting.reserve(WAITING);
     while let Some(kid) = stack.pop() {
         stats.nodes += 1;
         match kid {
