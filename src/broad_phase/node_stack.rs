@@ -2,37 +2,36 @@
 //!
 //! It grows without limit, so that no child is ever dropped.
 
+use arrayvec::ArrayVec;
+
 /// Entries kept without an allocation; a balanced tree of a million leaves needs some forty.
 const INLINE: usize = 64;
 
 /// A last-in, first-out stack.
 pub(super) struct NodeStack<T> {
-    inline: [T; INLINE],
-    length: usize,
+    inline: ArrayVec<T, INLINE>,
     spilled: Vec<T>,
 }
 
-impl<T: Copy> NodeStack<T> {
+impl<T> NodeStack<T> {
     /// A stack with one entry.
     pub(super) fn starting_with(first: T) -> Self {
-        Self { inline: [first; INLINE], length: 1, spilled: Vec::new() }
+        let mut inline = ArrayVec::new();
+        inline.push(first);
+        Self { inline, spilled: Vec::new() }
     }
 
+    #[inline(always)]
     pub(super) fn push(&mut self, value: T) {
-        if self.length < INLINE {
-            self.inline[self.length] = value;
-            self.length += 1;
-        } else {
-            self.spilled.push(value);
+        // While some are spilled the inline part is full.
+        if let Err(full) = self.inline.try_push(value) {
+            self.spilled.push(full.element());
         }
     }
 
+    #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<T> {
-        if let Some(value) = self.spilled.pop() {
-            return Some(value);
-        }
-        self.length = self.length.checked_sub(1)?;
-        Some(self.inline[self.length])
+        self.spilled.pop().or_else(|| self.inline.pop())
     }
 }
 

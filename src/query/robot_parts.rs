@@ -48,7 +48,7 @@ impl<'a> RobotParts<'a> {
         let not_found = || Refused::NotFound { what: "robot", name: robot.to_owned(), revision: snapshot.revision() };
         let robot = snapshot.robot(robot).ok_or_else(not_found)?;
         let model: &RobotModel = &robot.model;
-        let mut parts = Vec::new();
+        let mut parts = Vec::with_capacity(model.links().iter().map(|link| link.shapes.len()).sum());
         for (link, l) in (0u32..).zip(model.links()) {
             for (shape_index, of_link) in (0u32..).zip(&l.shapes) {
                 parts.push(LinkPart { link, shape_index, of_link });
@@ -63,16 +63,20 @@ impl<'a> RobotParts<'a> {
     fn pairs_of_parts(&self) -> Vec<SelfPair> {
         let links =
             if self.sieve.disregards_allowed_collisions() { self.model.self_pairs() } else { &self.robot.self_pairs };
-        let shapes_of = |link: u32| {
-            let first = self.parts.partition_point(|part| part.link < link);
-            let end = self.parts.partition_point(|part| part.link <= link);
-            first..end
-        };
-        let mut pairs = Vec::new();
+        // By link: the first of its parts.
+        let mut first: Vec<usize> = Vec::with_capacity(self.model.links().len() + 1);
+        first.push(0);
+        for link in self.model.links() {
+            first.push(first[first.len() - 1] + link.shapes.len());
+        }
+        let parts_of = |link: u32| first[link as usize]..first[link as usize + 1];
+        let mut pairs = Vec::with_capacity(links.len());
         for &(a, b) in links {
             let margin = self.snapshot.margin(self.robot.link(a), self.robot.link(b));
             let margin = margin.unwrap_or(self.context.margin);
-            pairs.extend(shapes_of(a).flat_map(|i| shapes_of(b).map(move |j| SelfPair { i, j, margin })));
+            for i in parts_of(a) {
+                parts_of(b).for_each(|j| pairs.push(SelfPair { i, j, margin }));
+            }
         }
         pairs
     }

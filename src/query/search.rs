@@ -109,6 +109,11 @@ impl<'a> Search<'a> {
         if self.margins_matter() { for_distance.max(self.plan.largest_margin) } else { for_distance }
     }
 
+    /// Whether what is found may shorten the reach: not where every pair within a distance is listed.
+    pub fn may_narrow(&self) -> bool {
+        self.plan.within.is_none()
+    }
+
     /// Whether more pairs cannot change the answer, or the time for them has run out: an item that was cut short is not
     /// answered at all.
     pub fn is_settled(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::answer::{ItemAnswer, Refused, Side};
 use super::pairs::finish;
 use super::request::{CheckStates, Wants};
-use super::robot_parts::{Placed, RobotParts};
+use super::robot_parts::{Placed, RobotParts, SelfPair};
 use super::search::{Party, Plan, Search};
 use crate::scene::{BodyId, Snapshot};
 
@@ -67,9 +67,7 @@ impl<'a> States<'a> {
         against_itself(&self.robot, &mut own, &scratch.placed, &mut scratch.near);
         let mut outer = Search::new(&plan);
         if !own.is_settled() {
-            for part in 0..self.robot.parts.len() {
-                against_scene(&self.robot, part, &mut outer, &scratch.placed);
-            }
+            all_against_scene(&self.robot, &mut outer, &scratch.placed);
         }
         let (own, outer) = (own.finish(), outer.finish());
         let minima = self.wants.distance.then(|| (own.nearest.clone(), outer.nearest.clone()));
@@ -85,20 +83,60 @@ impl<'a> States<'a> {
 /// Offers the pairs of links that may matter, nearest boxes first. `near` is memory to use again.
 pub(super) fn against_itself(robot: &RobotParts, search: &mut Search, placed: &Placed, near: &mut Vec<(f64, usize)>) {
     near.clear();
-    let reach = search.reach();
+    let offer = |search: &mut Search, k: usize| {
+        let SelfPair { i, j, margin } = robot.self_pairs[k];
+        search.offer(&robot.party(i, placed), &robot.party(j, placed), margin);
+        search.reach()
+    };
+    // Pairs whose boxes touch are in their order already, and what they tell leaves few of the others to be sorted.
+    let mut reach = search.reach();
     for (k, pair) in robot.self_pairs.iter().enumerate() {
         let distance = placed.bounds[pair.i].distance(&placed.bounds[pair.j]) * ROUNDING_DOWN;
-        if distance <= reach {
+        if distance > reach {
+            continue;
+        }
+        if distance > 0.0 {
             near.push((distance, k));
+            continue;
+        }
+        reach = offer(search, k);
+        if reach < 0.0 {
+            return;
         }
     }
+    near.retain(|(distance, _)| *distance <= reach);
     near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     for &(distance, k) in &*near {
-        if distance > search.reach() {
+        if distance > reach {
             break;
         }
-        let pair = &robot.self_pairs[k];
-        search.offer(&robot.party(pair.i, placed), &robot.party(pair.j, placed), pair.margin);
+        reach = offer(search, k);
+    }
+}
+
+/// Offers the bodies that may matter to any part of a link.
+fn all_against_scene(robot: &RobotParts, search: &mut Search, placed: &Placed) {
+    let parts = 0..robot.parts.len();
+    if !search.may_narrow() {
+        parts.for_each(|part| against_scene(robot, part, search, placed));
+        return;
+    }
+    // What touches the box of any part comes first: the nearest is among it as a rule, and then the others are looked for
+    // within less.
+    for part in parts.clone() {
+        if search.is_settled() {
+            return;
+        }
+        let offers = PartOffers::new(robot, part, placed);
+        offers.bounded(search, 0.0, |_| true);
+        offers.unbounded(search);
+    }
+    for part in parts {
+        let reach = search.reach();
+        if reach <= 0.0 {
+            return;
+        }
+        PartOffers::new(robot, part, placed).bounded(search, reach, |distance| distance > 0.0);
     }
 }
 
@@ -107,20 +145,46 @@ pub(super) fn against_scene(robot: &RobotParts, part: usize, search: &mut Search
     if search.is_settled() {
         return;
     }
-    let snapshot = robot.snapshot;
-    let one = robot.party(part, placed);
-    let offer = |search: &mut Search, id: BodyId| {
-        let body = snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
-        if let Some(margin) = robot.margin(robot.parts[part].link, body) {
-            let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
-            search.offer(&one, &other, margin);
-        }
-    };
+    let offers = PartOffers::new(robot, part, placed);
     let reach = search.reach();
-    let stats = snapshot.broad_phase().nearest(&placed.bounds[part], reach, |id, _| {
-        offer(search, BodyId(id));
-        search.reach()
-    });
-    search.cost.nodes += stats.nodes;
-    snapshot.unbounded().iter().for_each(|id| offer(search, *id));
+    offers.bounded(search, reach, |_| true);
+    offers.unbounded(search);
+}
+
+/// Offers bodies to one part of a link.
+struct PartOffers<'a> {
+    robot: &'a RobotParts<'a>,
+    part: usize,
+    placed: &'a Placed,
+    party: Party<'a>,
+}
+
+impl<'a> PartOffers<'a> {
+    fn new(robot: &'a RobotParts<'a>, part: usize, placed: &'a Placed) -> Self {
+        Self { robot, part, placed, party: robot.party(part, placed) }
+    }
+
+    /// Those with a box within `reach` metres, and as far as the search reaches then, if `counts` says so of the distance of the
+    /// boxes.
+    fn bounded(&self, search: &mut Search, reach: f64, counts: impl Fn(f64) -> bool) {
+        let stats = self.robot.snapshot.broad_phase().nearest(&self.placed.bounds[self.part], reach, |id, distance| {
+            if counts(distance) {
+                self.offer(search, BodyId(id));
+            }
+            search.reach()
+        });
+        search.cost.nodes += stats.nodes;
+    }
+
+    fn unbounded(&self, search: &mut Search) {
+        self.robot.snapshot.unbounded().iter().for_each(|id| self.offer(search, *id));
+    }
+
+    fn offer(&self, search: &mut Search, id: BodyId) {
+        let body = self.robot.snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
+        if let Some(margin) = self.robot.margin(self.robot.parts[self.part].link, body) {
+            let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
+            search.offer(&self.party, &other, margin);
+        }
+    }
 }

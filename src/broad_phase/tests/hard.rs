@@ -3,6 +3,7 @@
 
 use super::{Random, unit_box_at};
 use crate::broad_phase::DynamicTree;
+use crate::broad_phase::walk_by_distance::lower_distance;
 use crate::geometry::{Aabb, BoxCast, Vec3};
 use std::ops::ControlFlow;
 
@@ -68,6 +69,10 @@ fn check_near(name: &str, tree: &DynamicTree, boxes: &[Aabb], query: &Aabb) {
     let least = boxes.iter().map(|aabb| aabb.distance(&far)).fold(f64::INFINITY, f64::min);
     assert_eq!(nearest, least, "{name}");
 
+    for within in [0.0, least, query.max.norm(), f64::INFINITY] {
+        check_walk(name, tree, boxes, query, within);
+    }
+
     for motion in [query.max, -3.0 * query.min, Vec3::new(query.max.x, 0.0, 0.0), Vec3::new(0.0, 1e-40, 5.0)] {
         let cast = BoxCast { start: *query, motion };
         let mut met = Vec::new();
@@ -79,6 +84,43 @@ fn check_near(name: &str, tree: &DynamicTree, boxes: &[Aabb], query: &Aabb) {
         let expected = (0..).zip(boxes).filter(|(_, aabb)| cast.first_touch(aabb).is_some()).map(|(i, _)| i);
         assert_eq!(met, expected.collect::<Vec<u64>>(), "{name}: {cast:?}");
     }
+}
+
+/// What is visited within a distance, and in which order. How many of them touch.
+fn check_walk(name: &str, tree: &DynamicTree, boxes: &[Aabb], query: &Aabb, within: f64) -> usize {
+    let mut visited = Vec::new();
+    tree.nearest(query, within, |payload, distance| {
+        visited.push((distance, payload));
+        within
+    });
+    let all = boxes.iter().map(|aabb| lower_distance(aabb, query)).zip(0..);
+    let mut expected: Vec<(f64, u64)> = all.filter(|(distance, _)| *distance <= within).collect();
+    expected.sort_by(|one, two| one.partial_cmp(two).unwrap());
+    assert_eq!(visited, expected, "{name}, {query:?} within {within}");
+    visited.iter().filter(|(distance, _)| *distance == 0.0).count()
+}
+
+#[test]
+fn a_walk_goes_by_distance_and_then_by_number_however_many_touch() {
+    let mut random = Random(3);
+    let boxes: Vec<Aabb> = (0..2000).map(|_| random.scattered(2000)).collect();
+    let (mut none, mut few, mut many) = (0, 0, 0);
+    // Numbers that fall as the boxes come, so that no order is there by chance.
+    let backwards: Vec<Aabb> = boxes.iter().rev().copied().collect();
+    let (tree, _) = DynamicTree::build(boxes.iter().copied().zip((0..2000).rev()));
+    for size in [0.0, 0.1, 0.5, 1.0, 2.0, 5.0, 20.0] {
+        for _ in 0..20 {
+            let query = Aabb::centred(random.vector(10.0), Vec3::repeat(size));
+            for within in [0.0, 1e-3, 0.5, 3.0] {
+                match check_walk("scattered", &tree, &backwards, &query, within) {
+                    0 => none += 1,
+                    1..=32 => few += 1,
+                    _ => many += 1,
+                }
+            }
+        }
+    }
+    assert!(none > 50 && few > 50 && many > 50, "{none} {few} {many}");
 }
 
 #[test]
