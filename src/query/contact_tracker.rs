@@ -148,7 +148,7 @@ impl ContactTracker {
             return Err(Refused::Invalid { field: "context.solver".to_owned(), problem: unclaimed.to_string() }.into());
         }
         if found.truncated {
-            return Err(self.too_many(self.question.max_contacts + 1));
+            return Err(self.too_many(self.question.max_contacts.saturating_add(1)));
         }
         let measured = found.pairs.into_iter().filter_map(|answer| {
             let (Side::Body { id: a, .. }, Side::Body { id: b, .. }) = (&answer.a, &answer.b) else { return None };

@@ -205,7 +205,7 @@ impl<'a> Search<'a> {
     /// Keeps a pair for the list; those that the limit will cut off are dropped now and then, so that the list stays short.
     fn list(&mut self, pair: PairAnswer) {
         self.pairs.push(pair);
-        if self.pairs.len() > 2 * self.plan.context.max_pairs + 64 {
+        if self.pairs.len().saturating_sub(64) / 2 > self.plan.context.max_pairs {
             self.shorten();
         }
     }

@@ -283,6 +283,19 @@ fn what_touches_or_not_within_the_margin_is_in_contact_all_the_same() {
     assert!(matches!(within.events[0].pair.as_ref().unwrap().verdict, Verdict::Indeterminate(_)));
 }
 
+/// A limit near the largest number overflowed in the length at which the list of pairs is cut, so that it was sorted for
+/// every pair.
+#[test]
+fn the_largest_limit_is_no_limit() {
+    let mut scene = Scene::new(Epoch(1));
+    let balls: Vec<Edit> = (0..80).map(|i| ball(&format!("{i}"), 0.45 * f64::from(i))).collect();
+    scene.apply(&balls, None).unwrap();
+    for max_contacts in [usize::MAX, usize::MAX / 2, usize::MAX / 2 - 31] {
+        let mut tracker = ContactTracker::new(ContactQuestion { max_contacts, ..ContactQuestion::default() });
+        assert_eq!(tracker.advance(&scene.snapshot(), &|| false).unwrap().events.len(), 79 + 78);
+    }
+}
+
 #[test]
 fn what_cannot_be_led_on_is_refused_and_changes_nothing() {
     let mut scene = Scene::new(Epoch(1));
