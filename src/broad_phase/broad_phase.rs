@@ -108,7 +108,11 @@ impl BroadPhase {
     /// To be called after a list of changes and before the next question: puts right what the changes put off.
     pub fn settle(&mut self) {
         match self {
-            Self::Tree(tree) => tree.settle(),
+            Self::Tree(tree) => {
+                tree.settle();
+                // What is settled here is published and changes no more: its list of moves would wait in vain.
+                tree.release();
+            }
             Self::SweepAndPrune(sweep) => sweep.settle(),
             Self::Exhaustive(_) => (),
         }

@@ -102,6 +102,12 @@ impl<V: BoundingVolume> DynamicTree<V> {
         self.maintain();
     }
 
+    /// Gives back the memory that a settled tree keeps for its next list of changes: for a version that is only read
+    /// from now on.
+    pub fn release(&mut self) {
+        self.changes.shrink_to_fit();
+    }
+
     pub(super) fn is_settled(&self) -> bool {
         self.coming.is_empty() && self.changes.is_empty()
     }

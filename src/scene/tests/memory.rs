@@ -32,6 +32,20 @@ fn an_edit_writes_what_it_changes_however_large_the_scene() {
     }
 }
 
+/// Each kept revision had room for as many moves as it was made by, which nobody counted.
+#[test]
+fn a_revision_keeps_no_room_for_moves() {
+    let mut scene = row_of(3000, BroadPhaseKind::Tree, Limits::default());
+    let built = scene.snapshot().memory().broad_phase;
+    for shift in [0.1, 0.2, 0.3] {
+        let place = |i: u64| at(i as f64 + shift);
+        let moves = (1..=3000).map(|i| Edit::MoveBody { body: BodyId(i).into(), pose: place(i) });
+        scene.apply(&moves.collect::<Vec<_>>(), None).unwrap();
+        let moved = scene.snapshot().memory().broad_phase;
+        assert!(moved < built + built / 8, "{moved} bytes after moves, {built} before");
+    }
+}
+
 #[test]
 fn revisions_that_hold_too_much_are_let_go_early_and_the_newest_never() {
     for kind in KINDS {

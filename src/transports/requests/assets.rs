@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::service::{ContentHash, Patience, Service, ServiceError, Stored};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
+/// The rpc `HasAssets`.
+///
 /// # Errors
 /// A hash that is none.
 pub fn has_assets(service: &Service, message: &v1::HasAssetsRequest) -> Result<v1::HasAssetsResponse, ServiceError> {
@@ -18,6 +20,8 @@ pub fn has_assets(service: &Service, message: &v1::HasAssetsRequest) -> Result<v
     Ok(v1::HasAssetsResponse { present })
 }
 
+/// The rpc `DescribeMesh`.
+///
 /// # Errors
 /// As [`Service::mesh_card`].
 pub async fn describe_mesh(

@@ -8,6 +8,8 @@ use crate::query::Answer;
 use crate::service::{Service, ServiceError, View};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
+/// The rpc `CheckMotions`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn check_motions(
@@ -21,6 +23,8 @@ pub async fn check_motions(
     Ok(v1::CheckMotionsResponse { answer: Some(answer), motions, bulk })
 }
 
+/// The rpc `CheckPath`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn check_path(
@@ -34,6 +38,8 @@ pub async fn check_path(
     Ok(v1::CheckPathResponse { answer: Some(answer), motions, bulk })
 }
 
+/// The rpc `Clearance`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn clearance(

@@ -7,6 +7,8 @@ use crate::query::Answer;
 use crate::service::{ContactWatch, Patience, Service, ServiceError, View};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
+/// The rpc `CheckStates`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn check_states(
@@ -19,6 +21,8 @@ pub async fn check_states(
     Ok(v1::CheckStatesResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
+/// The rpc `Collide`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn collide(
@@ -31,6 +35,8 @@ pub async fn collide(
     Ok(v1::CollideResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
+/// The rpc `Distance`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn distance(
@@ -43,6 +49,8 @@ pub async fn distance(
     Ok(v1::DistanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
+/// The rpc `CastRays`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn cast_rays(
@@ -57,6 +65,8 @@ pub async fn cast_rays(
     .await
 }
 
+/// The rpc `CastShapes`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn cast_shapes(
@@ -72,6 +82,8 @@ pub async fn cast_shapes(
     .await
 }
 
+/// The rpc `CheckMovingPairs`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn check_moving_pairs(
@@ -87,6 +99,8 @@ pub async fn check_moving_pairs(
     .await
 }
 
+/// The rpc `Overlap`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn overlap(
@@ -102,6 +116,8 @@ pub async fn overlap(
     .await
 }
 
+/// The rpc `NearestBodies`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn nearest_bodies(

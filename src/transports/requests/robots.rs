@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::service::{Service, ServiceError};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
+/// The rpc `LoadRobot`.
+///
 /// # Errors
 /// As [`Service::load_robot`].
 pub async fn load_robot(
@@ -15,12 +17,14 @@ pub async fn load_robot(
     Ok(v1::LoadRobotResponse { robot: Some(to_proto::robot_model(&loaded)) })
 }
 
-/// All robot models.
+/// The rpc `ListRobots`.
 #[must_use]
 pub fn list_robots(service: &Service) -> v1::ListRobotsResponse {
     v1::ListRobotsResponse { robots: service.robots().list().iter().map(to_proto::robot_summary).collect() }
 }
 
+/// The rpc `GetRobot`.
+///
 /// # Errors
 /// There is no such model.
 pub fn get_robot(service: &Service, message: &v1::GetRobotRequest) -> Result<v1::GetRobotResponse, ServiceError> {

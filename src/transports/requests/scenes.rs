@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::service::{Patience, Service, ServiceError, Target};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
+/// The rpc `CreateScene`.
+///
 /// # Errors
 /// As [`Service::create_scene`].
 pub fn create_scene(
@@ -16,12 +18,14 @@ pub fn create_scene(
     Ok(v1::CreateSceneResponse { scene: Some(to_proto::scene_summary(&created)) })
 }
 
-/// All scenes.
+/// The rpc `ListScenes`.
 #[must_use]
 pub fn list_scenes(service: &Service) -> v1::ListScenesResponse {
     v1::ListScenesResponse { scenes: service.scenes().iter().map(to_proto::scene_summary).collect() }
 }
 
+/// The rpc `GetScene`.
+///
 /// # Errors
 /// As [`Service::ask`].
 pub async fn get_scene(
@@ -41,6 +45,8 @@ pub async fn get_scene(
     contents.await
 }
 
+/// The rpc `GetSceneHealth`.
+///
 /// # Errors
 /// As [`Service::scene_health`].
 pub async fn get_scene_health(
@@ -51,6 +57,8 @@ pub async fn get_scene_health(
     Ok(v1::GetSceneHealthResponse { health: Some(to_proto::scene_health(&health)) })
 }
 
+/// The rpc `DeleteScene`.
+///
 /// # Errors
 /// As [`Service::delete_scene`].
 pub fn delete_scene(
@@ -61,6 +69,8 @@ pub fn delete_scene(
     Ok(v1::DeleteSceneResponse { scene: Some(to_proto::scene_summary(&deleted)) })
 }
 
+/// The rpc `Apply`.
+///
 /// # Errors
 /// As [`Service::apply`].
 pub async fn apply(

@@ -3,7 +3,7 @@
 use crate::service::Service;
 use crate::transports::wire::{to_proto, v1};
 
-/// The daemon itself.
+/// The rpc `GetServerInfo`.
 #[must_use]
 pub fn get_server_info(service: &Service) -> v1::GetServerInfoResponse {
     v1::GetServerInfoResponse {
