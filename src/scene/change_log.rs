@@ -190,7 +190,7 @@ pub(super) struct ChangeLog {
     steps: IdMap<Arc<Step>>,
     /// The revision that the first step leads on from.
     oldest: Revision,
-    /// What the edits of the draft changed so far; empty in a snapshot that was published.
+    /// What the edits of the draft changed so far, or those of a hypothesis; empty in a snapshot that was published.
     open: Step,
 }
 
@@ -224,12 +224,13 @@ impl ChangeLog {
         }
     }
 
+    /// Ends a hypothesis: what its edits changed has no revision of its own, and counts as after the one that it is made on.
+    pub(super) fn suppose(&mut self) {
+        self.open.settle();
+    }
+
     /// What does not agree with the snapshot that the log is part of.
     pub(super) fn defect(&self, revision: Revision) -> Option<&'static str> {
-        let open = &self.open;
-        if !(open.bodies.is_empty() && open.robots.is_empty() && open.entries.is_empty()) {
-            return Some("changes of a draft are in a published log");
-        }
         let whole = (self.oldest.0 + 1..=revision.0).all(|step| self.steps.get(step).is_some());
         if !whole || self.steps.len() as u64 != revision.0 - self.oldest.0 {
             return Some("the log of changes has a gap, or steps of other revisions");
@@ -239,7 +240,9 @@ impl ChangeLog {
                 && step.robots.is_sorted_by(|a, b| a.name < b.name)
                 && step.entries.is_sorted_by(|a, b| a < b)
         };
-        (!self.steps.values().all(sorted)).then_some("a step of the log of changes is not in order")
+        let hypothesis = Arc::new(self.open.clone());
+        let in_order = self.steps.values().chain([&hypothesis]).all(sorted);
+        (!in_order).then_some("a step of the log of changes is not in order")
     }
 }
 
@@ -250,12 +253,12 @@ impl Snapshot {
         self.changes.oldest
     }
 
-    /// What changed since an earlier revision of the same epoch.
+    /// What changed since an earlier revision of the same epoch; what a hypothesis changed is part of it.
     ///
     /// # Errors
     /// The revision is older than [`Snapshot::oldest_change`], or later than the snapshot's own.
     pub fn changes_since(&self, since: Revision) -> Result<Changes, NotKept> {
-        let ChangeLog { steps, oldest, open: _ } = &self.changes;
+        let ChangeLog { steps, oldest, open } = &self.changes;
         if since < *oldest {
             return Err(NotKept::Gone { asked: since, oldest: *oldest });
         }
@@ -264,9 +267,8 @@ impl Snapshot {
         }
         let mut whole = Step::default();
         (since.0 + 1..=self.revision.0).filter_map(|step| steps.get(step)).for_each(|step| whole.add(step));
-        if self.revision.0 - since.0 > 1 {
-            whole.settle();
-        }
+        whole.add(open);
+        whole.settle();
         let Step { bodies, robots, entries } = whole;
         Ok(Changes { bodies, robots, entries })
     }
