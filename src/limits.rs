@@ -19,6 +19,10 @@ pub struct Limits {
     pub max_pairs: usize,
     /// States that one motion may be looked at in.
     pub max_motion_states: usize,
+    /// Overlays of one question.
+    pub max_overlays: usize,
+    /// Edits and attached bodies of all overlays of one question together.
+    pub max_overlay_edits: usize,
     /// Scenes of the daemon.
     pub max_scenes: usize,
     /// Bodies of one scene.
@@ -83,6 +87,8 @@ impl Default for Limits {
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
             max_motion_states: 100_000,
+            max_overlays: 1_024,
+            max_overlay_edits: 16_384,
             max_scenes: 1_000,
             max_bodies: 2_000_000,
             max_robots_in_scene: 64,
@@ -141,6 +147,8 @@ impl Limits {
             max_joint_values,
             max_pairs,
             max_motion_states,
+            max_overlays,
+            max_overlay_edits,
             max_scenes,
             max_bodies,
             max_robots_in_scene,
@@ -176,6 +184,8 @@ impl Limits {
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
             row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
+            row("max_overlays", max_overlays, "overlays per question", EXHAUSTED),
+            row("max_overlay_edits", max_overlay_edits, "edits of all overlays per question", EXHAUSTED),
             row("max_scenes", max_scenes, "scenes", EXHAUSTED),
             row("max_bodies", max_bodies, "bodies per scene", EXHAUSTED),
             row("max_robots_in_scene", max_robots_in_scene, "robots per scene", EXHAUSTED),

@@ -251,6 +251,12 @@ pub fn field_of(number: usize) -> String {
 }
 
 impl Worlds {
+    /// Without overlays.
+    #[must_use]
+    pub fn as_is(snapshot: &Arc<Snapshot>) -> Self {
+        Self { worlds: vec![World::as_is(snapshot)], of_item: Vec::new() }
+    }
+
     /// Of worlds that were made: first the common one, then those of the alternatives.
     ///
     /// # Errors

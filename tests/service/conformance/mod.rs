@@ -8,6 +8,7 @@ mod contacts;
 mod decompositions;
 mod fields;
 mod motions;
+mod overlays;
 mod questions;
 mod revisions;
 mod robots;

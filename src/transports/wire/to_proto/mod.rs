@@ -12,7 +12,7 @@ mod question;
 mod robot;
 mod scene;
 
-pub use answer::answer;
+pub use answer::{added_bodies, answer};
 pub use cast::{
     cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
 };
