@@ -80,6 +80,8 @@ pub struct Changes {
     robots: Vec<RobotChange>,
     /// Entries for pairs that were made, replaced by others or taken back, each in both orders, sorted.
     entries: Vec<(PartyKey, PartyKey)>,
+    /// What the groups of `entries` were called, sorted.
+    groups: Vec<(PartyKey, Arc<str>)>,
 }
 
 impl Changes {
@@ -106,6 +108,17 @@ impl Changes {
     #[must_use]
     pub fn has_entries(&self) -> bool {
         !self.entries.is_empty()
+    }
+
+    /// The two sides of each entry, once.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (PartyKey, PartyKey)> {
+        self.entries.iter().copied().filter(|(a, b)| a <= b)
+    }
+
+    /// What a group of an entry was called.
+    pub(super) fn group_name(&self, key: PartyKey) -> Option<&Arc<str>> {
+        let place = self.groups.binary_search_by_key(&key, |(group, _)| *group).ok()?;
+        Some(&self.groups[place].1)
     }
 
     /// Whether an entry that speaks of the pair was made, replaced by another or taken back. It need not be the one that
@@ -151,6 +164,8 @@ struct Step {
     robots: Vec<RobotChange>,
     /// In both orders, sorted, each once.
     entries: Vec<(PartyKey, PartyKey)>,
+    /// What the groups of `entries` are called: the scene may forget them with the entry. Sorted, each once.
+    groups: Vec<(PartyKey, Arc<str>)>,
 }
 
 impl Step {
@@ -158,6 +173,7 @@ impl Step {
         self.bodies.extend_from_slice(&other.bodies);
         self.robots.extend_from_slice(&other.robots);
         self.entries.extend_from_slice(&other.entries);
+        self.groups.extend_from_slice(&other.groups);
     }
 
     /// Puts in order what was added, and makes one of what is about the same.
@@ -180,6 +196,8 @@ impl Step {
         });
         self.entries.sort_unstable();
         self.entries.dedup();
+        self.groups.sort_unstable();
+        self.groups.dedup();
     }
 }
 
@@ -208,8 +226,10 @@ impl ChangeLog {
         self.open.robots.push(RobotChange { name: Arc::clone(name), kinds });
     }
 
-    pub(super) fn entry(&mut self, a: PartyKey, b: PartyKey) {
+    /// `groups`: what those of the two that are groups are called.
+    pub(super) fn entry(&mut self, a: PartyKey, b: PartyKey, groups: impl IntoIterator<Item = (PartyKey, Arc<str>)>) {
         self.open.entries.extend([(a, b), (b, a)]);
+        self.open.groups.extend(groups);
     }
 
     /// Ends the draft: its changes led to `revision`. Of the steps stay those that lead on from one of the `kept` latest
@@ -269,7 +289,7 @@ impl Snapshot {
         (since.0 + 1..=self.revision.0).filter_map(|step| steps.get(step)).for_each(|step| whole.add(step));
         whole.add(open);
         whole.settle();
-        let Step { bodies, robots, entries } = whole;
-        Ok(Changes { bodies, robots, entries })
+        let Step { bodies, robots, entries, groups } = whole;
+        Ok(Changes { bodies, robots, entries, groups })
     }
 }

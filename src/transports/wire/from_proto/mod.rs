@@ -12,6 +12,7 @@ mod path;
 mod query;
 mod robot;
 mod scene;
+mod stream;
 
 pub use answer::{NotAnAnswer, answer};
 pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
@@ -22,5 +23,6 @@ pub use overlay::{has_overlays, no_overlays, overlays};
 pub use query::{AnswerForm, answer_form, check_states, collide, distance, patience, revision_rule, target};
 pub use robot::robot_description;
 pub use scene::{BodyPage, body_page, change, scene_options};
+pub use stream::{pose_interval, poses};
 
 use path::Path;
