@@ -79,7 +79,8 @@ async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Door) {
     let shapes = v1::CastShapesRequest { context: context.clone(), ..v1::CastShapesRequest::default() };
     let moving = v1::CheckMovingPairsRequest { context: context.clone(), ..v1::CheckMovingPairsRequest::default() };
     let overlap = v1::OverlapRequest { context: context.clone(), ..v1::OverlapRequest::default() };
-    let nearest = v1::NearestBodiesRequest { context: context.clone(), ..v1::NearestBodiesRequest::default() };
+    let nearest =
+        v1::NearestBodiesRequest { context: context.clone(), count: 1, ..v1::NearestBodiesRequest::default() };
     let motions = v1::CheckMotionsRequest {
         context: context.clone(),
         robot: robot.clone(),
