@@ -307,7 +307,7 @@ impl Worlds {
 
 fn hold(snapshot: &Snapshot, attached: &Attached) -> Result<Held, (&'static str, String)> {
     let body = match &attached.body {
-        BodyRef::Id(id) => snapshot.body(*id).ok_or_else(|| Reason::UnknownId { id: *id }),
+        BodyRef::Id(id) => snapshot.body(*id).ok_or(Reason::UnknownId { id: *id }),
         BodyRef::Name(name) => snapshot.body_named(name).ok_or_else(|| Reason::UnknownBody { name: name.clone() }),
     };
     let body = body.map_err(|reason| ("body", reason.to_string()))?;

@@ -113,11 +113,13 @@ impl ServiceError {
     pub fn of_overlay(error: NotSupposed, number: usize) -> Self {
         let within = |field: &str| format!("{}.{field}", field_of(number));
         match error {
-            NotSupposed::Edit(refusal) => match Self::from(refusal) {
-                Self::Invalid { field, problem } => Self::Invalid { field: within(&field), problem },
-                Self::EditRefused { field, problem } => Self::EditRefused { field: within(&field), problem },
-                other => other,
-            },
+            NotSupposed::Edit(refusal) => {
+                let mut error = Self::from(refusal);
+                if let Self::Invalid { field, .. } | Self::EditRefused { field, .. } = &mut error {
+                    *field = within(field);
+                }
+                error
+            }
             NotSupposed::Attached { index, field, problem } => {
                 Self::EditRefused { field: within(&format!("attached[{index}].{field}")), problem }
             }

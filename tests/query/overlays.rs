@@ -365,10 +365,8 @@ fn a_motion_takes_what_is_held_along() {
 }
 
 fn refused(asked: &Worlds, question: &PairQuery) -> String {
-    match Prepared::collide(asked, question).err().unwrap() {
-        Refused::Invalid { field, .. } => field,
-        other => panic!("{other:?}"),
-    }
+    let Some(Refused::Invalid { field, .. }) = Prepared::collide(asked, question).err() else { panic!("it passed") };
+    field
 }
 
 #[test]

@@ -30,8 +30,12 @@ pub fn poses(message: &v1::PoseStreamRequest) -> (Vec<NewPose>, Vec<(String, Str
     for pose in all {
         match pose {
             Ok(pose) => poses.push(pose),
-            Err(ServiceError::Invalid { field, problem }) => refused.push((field, problem)),
-            Err(other) => refused.push((String::new(), other.to_string())),
+            Err(error) => {
+                let text = error.to_string();
+                let named =
+                    if let ServiceError::Invalid { field, problem } = error { Some((field, problem)) } else { None };
+                refused.push(named.unwrap_or((String::new(), text)));
+            }
         }
     }
     (poses, refused)
