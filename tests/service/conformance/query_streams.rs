@@ -126,7 +126,7 @@ async fn answers_come_in_order_where_asked(door: &impl Door) {
     scene(door).await;
     // Long and short ones in turn.
     let question = |id: u64| {
-        let items = if id % 2 == 0 { vec![all_pairs(); 60] } else { vec![body(named("1"))] };
+        let items = if id.is_multiple_of(2) { vec![all_pairs(); 60] } else { vec![body(named("1"))] };
         asked(id, Question::Collide(collide(items)))
     };
     for (in_order, most) in [(true, 0), (true, 1), (false, 0), (false, 3)] {
@@ -152,9 +152,9 @@ async fn a_question_that_is_refused_does_not_end_the_stream(door: &impl Door) {
         asked(5, Question::Collide(collide(vec![body(named("1"))]))),
     ];
     let answers = ask(door, questions).await;
-    let refused = |answer: &v1::QueryStreamResponse| match answer.outcome.as_ref().unwrap() {
-        Outcome::Error(error) => (error.code, error.reason(), error.details.get("clearance-field").cloned()),
-        other => panic!("{other:?}"),
+    let refused = |answer: &v1::QueryStreamResponse| {
+        let Some(Outcome::Error(error)) = &answer.outcome else { panic!("{answer:?}") };
+        (error.code, error.reason(), error.details.get("clearance-field").cloned())
     };
     assert_eq!(answers.iter().map(|answer| answer.id).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
     assert_eq!(refused(&answers[0]), (i32::from(Code::NotFound), v1::ErrorReason::NotFound, None));

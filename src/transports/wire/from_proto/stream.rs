@@ -13,13 +13,13 @@ const LONGEST_INTERVAL: f64 = 10.0;
 /// The poses of a message, and those of them that cannot be: field and what is wrong with it.
 #[must_use]
 pub fn poses(message: &v1::PoseStreamRequest) -> (Vec<NewPose>, Vec<(String, String)>) {
-    let body = |(index, message): (usize, &v1::BodyPose)| {
+    let body = |(index, message): (usize, &v1::BodyPose)| -> Result<NewPose, ServiceError> {
         let path = Path::root_item("bodies", index);
         let of = PoseOf::Body(body_ref(&path.field("body"), message.body.as_ref())?);
         let pose = required_pose(&path.field("pose"), message.pose.as_ref())?;
         Ok(NewPose { of, pose, field: path.field("body").to_string() })
     };
-    let robot = |(index, message): (usize, &v1::RobotPose)| {
+    let robot = |(index, message): (usize, &v1::RobotPose)| -> Result<NewPose, ServiceError> {
         let path = Path::root_item("robots", index);
         let pose = required_pose(&path.field("base"), message.base.as_ref())?;
         Ok(NewPose { of: PoseOf::Robot(message.robot.clone()), pose, field: path.field("robot").to_string() })
@@ -30,15 +30,16 @@ pub fn poses(message: &v1::PoseStreamRequest) -> (Vec<NewPose>, Vec<(String, Str
     for pose in all {
         match pose {
             Ok(pose) => poses.push(pose),
-            Err(error) => {
-                let text = error.to_string();
-                let named =
-                    if let ServiceError::Invalid { field, problem } = error { Some((field, problem)) } else { None };
-                refused.push(named.unwrap_or((String::new(), text)));
-            }
+            Err(error) => refused.push(named(error)),
         }
     }
     (poses, refused)
+}
+
+/// Field and problem of an error in a message.
+fn named(error: ServiceError) -> (String, String) {
+    let text = error.to_string();
+    if let ServiceError::Invalid { field, problem } = error { (field, problem) } else { (String::new(), text) }
 }
 
 /// How long a stream of poses waits between two revisions.
