@@ -19,6 +19,10 @@ pub struct Limits {
     pub max_pairs: usize,
     /// States that one motion may be looked at in.
     pub max_motion_states: usize,
+    /// Overlays of one question.
+    pub max_overlays: usize,
+    /// Edits and attached bodies of all overlays of one question together.
+    pub max_overlay_edits: usize,
     /// Scenes of the daemon.
     pub max_scenes: usize,
     /// Bodies of one scene.
@@ -65,8 +69,12 @@ pub struct Limits {
     pub max_queries_in_flight: usize,
     /// Changes of one scene waiting for their turn.
     pub max_queued_writes: usize,
-    /// Callers that watch contacts, over all scenes.
+    /// Callers that watch scenes or contacts, over all scenes.
     pub max_watchers: usize,
+    /// Streams of poses or of questions, over all scenes.
+    pub max_streams: usize,
+    /// Questions of one stream being answered at a time.
+    pub max_stream_in_flight: usize,
     /// Pairs in contact or undecided that one watcher may have.
     pub max_contacts: usize,
     /// Uploads and robot loadings under way.
@@ -83,6 +91,8 @@ impl Default for Limits {
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
             max_motion_states: 100_000,
+            max_overlays: 1_024,
+            max_overlay_edits: 16_384,
             max_scenes: 1_000,
             max_bodies: 2_000_000,
             max_robots_in_scene: 64,
@@ -107,6 +117,8 @@ impl Default for Limits {
             max_queries_in_flight: 64,
             max_queued_writes: 64,
             max_watchers: 32,
+            max_streams: 64,
+            max_stream_in_flight: 16,
             max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
@@ -141,6 +153,8 @@ impl Limits {
             max_joint_values,
             max_pairs,
             max_motion_states,
+            max_overlays,
+            max_overlay_edits,
             max_scenes,
             max_bodies,
             max_robots_in_scene,
@@ -165,6 +179,8 @@ impl Limits {
             max_queries_in_flight,
             max_queued_writes,
             max_watchers,
+            max_streams,
+            max_stream_in_flight,
             max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
@@ -176,6 +192,8 @@ impl Limits {
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
             row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
+            row("max_overlays", max_overlays, "overlays per question", EXHAUSTED),
+            row("max_overlay_edits", max_overlay_edits, "edits of all overlays per question", EXHAUSTED),
             row("max_scenes", max_scenes, "scenes", EXHAUSTED),
             row("max_bodies", max_bodies, "bodies per scene", EXHAUSTED),
             row("max_robots_in_scene", max_robots_in_scene, "robots per scene", EXHAUSTED),
@@ -210,6 +228,13 @@ impl Limits {
             row("max_queries_in_flight", max_queries_in_flight, "questions at a time", EXHAUSTED),
             row("max_queued_writes", max_queued_writes, "waiting changes per scene", EXHAUSTED),
             row("max_watchers", max_watchers, "watchers at a time", EXHAUSTED),
+            row("max_streams", max_streams, "streams of poses or questions at a time", EXHAUSTED),
+            row(
+                "max_stream_in_flight",
+                max_stream_in_flight,
+                "questions of one stream at a time",
+                "the daemon does not read on until one is answered; asking for more: RESOURCE_EXHAUSTED",
+            ),
             row("max_contacts", max_contacts, "contacts per watcher", EXHAUSTED_AT_THE_END),
             row("max_uploads_in_flight", max_uploads_in_flight, "uploads at a time", EXHAUSTED),
             row(

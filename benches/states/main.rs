@@ -110,7 +110,7 @@ fn in_process(batches: &[Batch], width: usize, size: usize, wants: Wants) -> f64
         .collect();
     states_per_second(|| {
         let answers = requests.iter().map(|(snapshot, request)| {
-            Prepared::check_states(snapshot, request).expect("the workload is in order").answer(&|| false)
+            Prepared::check_states(&**snapshot, request).expect("the workload is in order").answer(&|| false)
         });
         answers.map(|answer| answer.items.len()).sum()
     })

@@ -4,6 +4,7 @@
 use std::sync::{Arc, OnceLock};
 
 use clearance::limits::Limits;
+use clearance::query::Worlds;
 use clearance::scene::{Epoch, Scene, Snapshot};
 use clearance::service::{Config, Service};
 use clearance::transports::wire::{from_proto, v1};
@@ -12,6 +13,7 @@ use prost::Message;
 
 static SERVICE: OnceLock<Arc<Service>> = OnceLock::new();
 static SNAPSHOT: OnceLock<Arc<Snapshot>> = OnceLock::new();
+static WORLDS: OnceLock<Worlds> = OnceLock::new();
 
 /// Decodes a message, and reads it if that can be done.
 fn read<M: Message + Default, T>(bytes: &[u8], reader: impl FnOnce(&M) -> T) {
@@ -25,14 +27,15 @@ fuzz_target!(|bytes: &[u8]| {
         Service::new(&Config { threads: 1, limits: Limits::default() }).expect("a thread can be started")
     });
     let snapshot = SNAPSHOT.get_or_init(|| Scene::new(Epoch(1)).snapshot());
+    let worlds = WORLDS.get_or_init(|| Worlds::as_is(snapshot));
     let Some((choice, message)) = bytes.split_first() else { return };
     let (library, robots) = (service.library(), service.robots());
-    match choice % 12 {
+    match choice % 14 {
         0 => read(message, |request: &v1::ApplyRequest| from_proto::change(request, library, robots)),
         1 => read(message, |request: &v1::LoadRobotRequest| from_proto::robot_description(request.clone())),
         2 => read(message, |answer: &v1::Answer| from_proto::answer(answer)),
         3 => read(message, |request: &v1::CheckStatesRequest| from_proto::check_states(request, snapshot)),
-        4 => read(message, |request: &v1::CollideRequest| from_proto::collide(request, snapshot, library)),
+        4 => read(message, |request: &v1::CollideRequest| from_proto::collide(request, worlds, library)),
         5 => read(message, |request: &v1::CheckMotionsRequest| from_proto::check_motions(request, snapshot)),
         6 => read(message, |request: &v1::CheckPathRequest| from_proto::check_path(request, snapshot)),
         7 => read(message, |request: &v1::CastRaysRequest| from_proto::cast_rays(request, snapshot)),
@@ -41,6 +44,8 @@ fuzz_target!(|bytes: &[u8]| {
         10 => {
             read(message, |request: &v1::NearestBodiesRequest| from_proto::nearest_bodies(request, snapshot, library))
         }
+        11 => read(message, |context: &v1::Context| from_proto::overlays(context, library, robots)),
+        12 => read(message, |request: &v1::PoseStreamRequest| from_proto::poses(request)),
         _ => read(message, |request: &v1::WatchContactsRequest| {
             from_proto::contact_question(request, snapshot, &Limits::default())
         }),

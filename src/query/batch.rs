@@ -5,18 +5,19 @@ use std::ops::Range;
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::context::length;
 use super::motions::Motions;
+use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
 use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Mode, PairQuery};
 use super::states::States;
 use crate::narrow_phase::Cost;
-use crate::scene::Snapshot;
 
-/// A checked request on a snapshot. Runs of disjoint ranges may go on at the same time; [`Prepared::join`] puts their
-/// parts together in order.
+/// A checked request on a snapshot, or on worlds supposed on it. Runs of disjoint ranges may go on at the same time;
+/// [`Prepared::join`] puts their parts together in order.
 pub struct Prepared<'a> {
-    snapshot: &'a Snapshot,
+    asked: Asked<'a>,
     mode: Mode,
-    question: Question<'a>,
+    /// One for each world, the common one first: the same question.
+    questions: Vec<Question<'a>>,
 }
 
 enum Question<'a> {
@@ -36,9 +37,8 @@ impl<'a> Prepared<'a> {
     ///
     /// # Errors
     /// A context that cannot be, a robot that is not in the scene, positions that are no whole number of states.
-    pub fn check_states(snapshot: &'a Snapshot, request: &'a CheckStates) -> Result<Self, Refused> {
-        let question = Question::States(States::new(snapshot, request)?);
-        Ok(Self { snapshot, mode: request.mode, question })
+    pub fn check_states(asked: impl Into<Asked<'a>>, request: &'a CheckStates) -> Result<Self, Refused> {
+        Self::in_each(asked.into(), request.mode, |world| Ok(Question::States(States::new(world, request)?)))
     }
 
     /// Is the robot free all along these motions?
@@ -46,50 +46,77 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A context, resolution or number of states that cannot be, a robot that is not in the scene or does not move, positions
     /// that are no whole number of motions.
-    pub fn check_motions(snapshot: &'a Snapshot, request: &'a CheckMotions) -> Result<Self, Refused> {
-        let question = Question::Motions(Motions::new(snapshot, request)?);
-        Ok(Self { snapshot, mode: request.mode, question })
+    pub fn check_motions(asked: impl Into<Asked<'a>>, request: &'a CheckMotions) -> Result<Self, Refused> {
+        Self::in_each(asked.into(), request.mode, |world| Ok(Question::Motions(Motions::new(world, request)?)))
     }
 
     /// Which pairs touch?
     ///
     /// # Errors
     /// A context that cannot be.
-    pub fn collide(snapshot: &'a Snapshot, request: &'a PairQuery) -> Result<Self, Refused> {
-        let question = Question::Pairs(Pairs::collide(snapshot, request)?);
-        Ok(Self { snapshot, mode: request.mode, question })
+    pub fn collide(asked: impl Into<Asked<'a>>, request: &'a PairQuery) -> Result<Self, Refused> {
+        let asked = asked.into();
+        let common = Pairs::collide(asked.common().snapshot, request)?;
+        Self::of_pairs(asked, request.mode, &common)
     }
 
     /// How far is the nearest?
     ///
     /// # Errors
     /// A context that cannot be.
-    pub fn distance(snapshot: &'a Snapshot, request: &'a PairQuery) -> Result<Self, Refused> {
-        let question = Question::Pairs(Pairs::distance(snapshot, request)?);
-        Ok(Self { snapshot, mode: request.mode, question })
+    pub fn distance(asked: impl Into<Asked<'a>>, request: &'a PairQuery) -> Result<Self, Refused> {
+        let asked = asked.into();
+        let common = Pairs::distance(asked.common().snapshot, request)?;
+        Self::of_pairs(asked, request.mode, &common)
     }
 
     /// Which pairs are within a distance?
     ///
     /// # Errors
     /// A distance that is negative or not finite, and what the question about states or subjects refuses.
-    pub fn clearance(snapshot: &'a Snapshot, request: &'a Clearance) -> Result<Self, Refused> {
+    pub fn clearance(asked: impl Into<Asked<'a>>, request: &'a Clearance) -> Result<Self, Refused> {
+        let asked = asked.into();
         length("within", request.within)?;
-        let (question, mode) = match &request.subjects {
-            ClearanceOf::States(states) => {
-                (Question::States(States::clearance(snapshot, states, request.within)?), states.mode)
-            }
+        match &request.subjects {
+            ClearanceOf::States(states) => Self::in_each(asked, states.mode, |world| {
+                Ok(Question::States(States::clearance(world, states, request.within)?))
+            }),
             ClearanceOf::Subjects(pairs) => {
-                (Question::Pairs(Pairs::clearance(snapshot, pairs, request.within)?), pairs.mode)
+                let common = Pairs::clearance(asked.common().snapshot, pairs, request.within)?;
+                Self::of_pairs(asked, pairs.mode, &common)
             }
-        };
-        Ok(Self { snapshot, mode, question })
+        }
+    }
+
+    fn of_pairs(asked: Asked<'a>, mode: Mode, common: &Pairs<'a>) -> Result<Self, Refused> {
+        Self::in_each(asked, mode, |world| {
+            world.check_nothing_held()?;
+            // The common question once more, as it is cheap, and otherwise the same in another world.
+            Ok(Question::Pairs(common.in_world(world)))
+        })
+    }
+
+    fn in_each(
+        asked: Asked<'a>,
+        mode: Mode,
+        question: impl Fn(Place<'a>) -> Result<Question<'a>, Refused>,
+    ) -> Result<Self, Refused> {
+        let questions = asked.places().map(question);
+        let questions: Vec<Question<'a>> = questions.collect::<Result<_, Refused>>()?;
+        for (number, question) in questions.iter().enumerate() {
+            if question.width() != questions[0].width() {
+                let problem = "puts a robot with other joints in the place of the one that is asked about".to_owned();
+                return Err(Refused::Invalid { field: field_of(number), problem });
+            }
+        }
+        asked.check_items(questions[0].len())?;
+        Ok(Self { asked, mode, questions })
     }
 
     /// Number of items that a thread should take at a time, at least: fewer cost more in handing over than they gain.
     #[must_use]
     pub fn smallest_part(&self) -> usize {
-        match &self.question {
+        match self.questions[0] {
             Question::States(_) | Question::Pairs(_) => 8,
             // A motion is the work of tens of states.
             Question::Motions(_) => 1,
@@ -99,11 +126,7 @@ impl<'a> Prepared<'a> {
     /// Number of items.
     #[must_use]
     pub fn len(&self) -> usize {
-        match &self.question {
-            Question::States(states) => states.len(),
-            Question::Motions(motions) => motions.len(),
-            Question::Pairs(pairs) => pairs.len(),
-        }
+        self.questions[0].len()
     }
 
     /// Whether there is nothing to answer.
@@ -116,14 +139,22 @@ impl<'a> Prepared<'a> {
     /// left is not run.
     #[must_use]
     pub fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> Part {
-        match &self.question {
-            Question::States(states) => {
-                let mut scratch = states.scratch();
-                self.run_items(range, stop, |i| states.answer(i, &mut scratch, stop))
+        // Memory that states use again, of the world that the last item was asked in.
+        let mut scratch = None;
+        self.run_items(range, stop, |i| {
+            let number = self.asked.number(i);
+            match &self.questions[number] {
+                Question::States(states) => {
+                    let (_, memory) = match scratch.take() {
+                        Some(of) if matches!(of, (world, _) if world == number) => scratch.insert(of),
+                        _ => scratch.insert((number, states.scratch())),
+                    };
+                    states.answer(i, memory, stop)
+                }
+                Question::Motions(motions) => motions.answer(i, stop),
+                Question::Pairs(pairs) => pairs.answer(i, stop),
             }
-            Question::Motions(motions) => self.run_items(range, stop, |i| motions.answer(i, stop)),
-            Question::Pairs(pairs) => self.run_items(range, stop, |i| pairs.answer(i, stop)),
-        }
+        })
     }
 
     fn run_items(
@@ -159,8 +190,8 @@ impl<'a> Prepared<'a> {
     #[must_use]
     pub fn join(&self, parts: impl IntoIterator<Item = Part>) -> Answer {
         let mut answer = Answer {
-            epoch: self.snapshot.epoch(),
-            revision: self.snapshot.revision(),
+            epoch: self.asked.common().snapshot.epoch(),
+            revision: self.asked.common().snapshot.revision(),
             items: Vec::with_capacity(self.len()),
             stopped_at: None,
             out_of_time: false,
@@ -189,5 +220,24 @@ impl<'a> Prepared<'a> {
     #[must_use]
     pub fn answer(&self, stop: &dyn Fn() -> bool) -> Answer {
         self.join([self.run(0..self.len(), stop)])
+    }
+}
+
+impl Question<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::States(states) => states.len(),
+            Self::Motions(motions) => motions.len(),
+            Self::Pairs(pairs) => pairs.len(),
+        }
+    }
+
+    /// Joint positions of one state.
+    fn width(&self) -> usize {
+        match self {
+            Self::States(states) => states.width(),
+            Self::Motions(motions) => motions.width(),
+            Self::Pairs(_) => 0,
+        }
     }
 }

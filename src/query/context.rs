@@ -49,6 +49,12 @@ impl<'a> Sieve<'a> {
         body.enabled && in_groups && self.ignore.binary_search(&body.id).is_err()
     }
 
+    /// Whether the body counts as part of a robot that holds it: the groups of the filter are those of what it is held
+    /// against.
+    pub fn admits_held(&self, body: &Body) -> bool {
+        body.enabled && self.ignore.binary_search(&body.id).is_err()
+    }
+
     /// Whether pairs that the scene allows to collide are looked at all the same.
     pub fn disregards_allowed_collisions(&self) -> bool {
         self.disregard_allowed

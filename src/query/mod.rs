@@ -18,6 +18,7 @@ mod motions;
 mod nearest_bodies;
 mod opponents;
 mod overlap;
+mod overlay;
 mod pairs;
 mod rays;
 mod request;
@@ -42,6 +43,7 @@ pub use item_batch::ItemBatch;
 pub use mesh_card::MeshCard;
 pub use nearest_bodies::Neighbours;
 pub use overlap::Overlaps;
+pub use overlay::{Asked, Attached, NotSupposed, Overlay, Overlays, World, Worlds, field_of};
 pub use rays::Rays;
 pub use request::{
     CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Filter, Find, Mode, Motions, PairQuery, Subject, Wants,

@@ -71,7 +71,7 @@ impl<'a> Movable<'a> {
     pub fn new(robot: RobotParts<'a>) -> Self {
         let joints = MovingJoints::of(robot.model);
         let balls: Vec<MovedBall> = (robot.parts.iter())
-            .map(|part| MovedBall { link: part.link, in_link: part.of_link.pose, ball: part.of_link.ball })
+            .map(|part| MovedBall { link: part.link, in_link: *part.in_link, ball: part.ball })
             .collect();
         let mut first_speed = vec![0];
         for ball in &balls {
@@ -200,7 +200,7 @@ impl<'a> Gauge<'a> {
         let (cost, unclaimed, solver, stop) = (&mut self.cost, &mut self.unclaimed, self.solver, self.stop);
         let mut look = |nearest: &mut Nearest, id: BodyId| {
             let body = snapshot.body(id).expect("the tree holds bodies of the snapshot");
-            let Some(margin) = robot.margin(robot.parts[part].link, body) else { return };
+            let Some(margin) = robot.margin(&robot.parts[part], body) else { return };
             let margin = if with_margin { margin } else { 0.0 };
             let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
             let bracket = bracket(&one, &other, margin, nearest.free, solver, stop, cost);

@@ -6,12 +6,12 @@
 use super::answer::{Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Verdict};
 use super::motion_course::{Event, Open, Outcome, Rules, explore};
 use super::motion_measure::{Gauge, Movable, Subject};
+use super::overlay::Place;
 use super::request::{CheckMotions, Find, Motions as Layout, Wants};
 use super::robot_parts::{Placed, RobotParts};
 use super::search::{Plan, Search};
 use super::states::against_scene;
 use crate::robot::JointLine;
-use crate::scene::Snapshot;
 
 /// A checked request.
 pub(super) struct Motions<'a> {
@@ -20,8 +20,8 @@ pub(super) struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    pub fn new(snapshot: &'a Snapshot, request: &'a CheckMotions) -> Result<Self, Refused> {
-        let robot = RobotParts::new(snapshot, &request.robot, &request.context)?;
+    pub fn new(world: Place<'a>, request: &'a CheckMotions) -> Result<Self, Refused> {
+        let robot = RobotParts::in_world(world, &request.robot, &request.context)?;
         let invalid = |field: &str, problem: String| Err(Refused::Invalid { field: field.to_owned(), problem });
         let resolution = request.resolution;
         if !(resolution.is_finite() && resolution > 0.0) {
@@ -44,6 +44,11 @@ impl<'a> Motions<'a> {
             return invalid("positions", problem);
         }
         Ok(Self { request, movable: Movable::new(robot) })
+    }
+
+    /// How many joints move.
+    pub fn width(&self) -> usize {
+        self.movable.robot.model.degrees_of_freedom()
     }
 
     pub fn len(&self) -> usize {

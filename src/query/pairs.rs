@@ -2,6 +2,7 @@
 
 use super::answer::{ItemAnswer, Refused, Side, Verdict};
 use super::context::Sieve;
+use super::overlay::Place;
 use super::request::{PairQuery, Subject, Wants};
 use super::search::{Found, Party, Plan, Search};
 use crate::geometry::{Aabb, Pose, Shape};
@@ -38,6 +39,12 @@ impl<'a> Pairs<'a> {
         let sieve = Sieve::new(snapshot, &request.context)?;
         request.items.iter().enumerate().try_for_each(|(item, subject)| check_revision(snapshot, item, subject))?;
         Ok(Self { snapshot, request, wants, sieve, touching: false, within: None })
+    }
+
+    /// The same question in the world of an overlay. What the context names was looked for in the world it was made with.
+    pub fn in_world(&self, world: Place<'a>) -> Self {
+        let Self { request, wants, touching, within, .. } = *self;
+        Self { snapshot: world.snapshot, request, wants, sieve: Sieve::unchecked(&request.context), touching, within }
     }
 
     /// For contacts that are tracked: what the filter names has to be there at the `first` revision only.

@@ -2,11 +2,12 @@
 
 use super::answer::{Refused, Side};
 use super::context::Sieve;
+use super::overlay::{Held, Place};
 use super::request::Context;
 use super::search::Party;
-use crate::geometry::{Aabb, Placement, Pose, Shape, Vec3};
-use crate::robot::{LinkShape, RobotModel};
-use crate::scene::{Body, RobotInScene, Snapshot};
+use crate::geometry::{Aabb, Ball, Placement, Pose, Shape, Vec3};
+use crate::robot::RobotModel;
+use crate::scene::{Body, BodyId, RobotInScene, Snapshot};
 
 /// A robot of the scene with the pairs that the question's filter and the scene's tables admit.
 pub(super) struct RobotParts<'a> {
@@ -16,15 +17,23 @@ pub(super) struct RobotParts<'a> {
     pub robot: &'a RobotInScene,
     pub model: &'a RobotModel,
     pub parts: Vec<LinkPart<'a>>,
-    /// Pairs of parts of links that are held against each other.
+    /// Pairs of parts of links, and of bodies that links hold, that are held against each other.
     pub self_pairs: Vec<SelfPair>,
+    /// Bodies that the robot holds, sorted: they are not where the scene has them.
+    held: Vec<BodyId>,
 }
 
-/// One shape of one link.
+/// One shape of one link, or a body that a link holds.
 pub(super) struct LinkPart<'a> {
     pub link: u32,
     pub shape_index: u32,
-    pub of_link: &'a LinkShape,
+    pub shape: &'a Shape,
+    /// Its frame in the link's, metres.
+    pub in_link: &'a Pose,
+    /// Holds the shape; in the shape's frame, metres.
+    pub ball: Ball,
+    /// Not a shape of the link's own.
+    pub held: Option<&'a Body>,
 }
 
 /// Two parts that are held against each other.
@@ -43,20 +52,63 @@ pub(super) struct Placed {
 }
 
 impl<'a> RobotParts<'a> {
-    pub fn new(snapshot: &'a Snapshot, robot: &str, context: &'a Context) -> Result<Self, Refused> {
-        let sieve = Sieve::new(snapshot, context)?;
+    /// In the world of an overlay. What the context names was looked for in the common one.
+    pub fn in_world(world: Place<'a>, robot: &str, context: &'a Context) -> Result<Self, Refused> {
+        world.check_held_by(robot)?;
+        let snapshot = world.snapshot;
+        let sieve = if world.number == 0 { Sieve::new(snapshot, context)? } else { Sieve::unchecked(context) };
+        let mut robot = Self::with_sieve(snapshot, robot, context, sieve)?;
+        world.held.iter().for_each(|held| robot.hold(held));
+        Ok(robot)
+    }
+
+    fn with_sieve(
+        snapshot: &'a Snapshot,
+        robot: &str,
+        context: &'a Context,
+        sieve: Sieve<'a>,
+    ) -> Result<Self, Refused> {
         let not_found = || Refused::NotFound { what: "robot", name: robot.to_owned(), revision: snapshot.revision() };
         let robot = snapshot.robot(robot).ok_or_else(not_found)?;
         let model: &RobotModel = &robot.model;
         let mut parts = Vec::with_capacity(model.links().iter().map(|link| link.shapes.len()).sum());
         for (link, l) in (0u32..).zip(model.links()) {
             for (shape_index, of_link) in (0u32..).zip(&l.shapes) {
-                parts.push(LinkPart { link, shape_index, of_link });
+                let (shape, in_link, ball) = (&*of_link.shape, &of_link.pose, of_link.ball);
+                parts.push(LinkPart { link, shape_index, shape, in_link, ball, held: None });
             }
         }
-        let mut robot = Self { snapshot, context, sieve, robot, model, parts, self_pairs: Vec::new() };
+        let (self_pairs, held) = (Vec::new(), Vec::new());
+        let mut robot = Self { snapshot, context, sieve, robot, model, parts, self_pairs, held };
         robot.self_pairs = robot.pairs_of_parts();
         Ok(robot)
+    }
+
+    /// A body moves with a link from now on. It is held against the other links but for those that may touch it, against
+    /// bodies that other links hold, and against the scene.
+    fn hold(&mut self, held: &'a Held) {
+        if let Err(place) = self.held.binary_search(&held.body) {
+            self.held.insert(place, held.body);
+        }
+        let Some(body) = self.snapshot.body(held.body).map(|body| &**body) else { return };
+        if !self.sieve.admits_held(body) || body.shape.is_empty() {
+            return;
+        }
+        let j = self.parts.len();
+        for (i, part) in self.parts.iter().enumerate() {
+            let margin = match part.held {
+                _ if part.link == held.link => None,
+                None if held.may_touch.contains(&part.link) => None,
+                None => self.margin_of_link(part.link, body),
+                Some(other) => self.margin_of_bodies(other, body),
+            };
+            // The lower id is side A, as everywhere.
+            let (i, j) = if part.held.is_some_and(|other| other.id > body.id) { (j, i) } else { (i, j) };
+            self.self_pairs.extend(margin.map(|margin| SelfPair { i, j, margin }));
+        }
+        let (shape, in_link) = (&*body.shape, &held.body_in_link);
+        let Some(ball) = Ball::around(shape) else { return };
+        self.parts.push(LinkPart { link: held.link, shape_index: 0, shape, in_link, ball, held: Some(body) });
     }
 
     /// Every shape of one link against every shape of the other, for the pairs of links that are held against each other.
@@ -81,11 +133,31 @@ impl<'a> RobotParts<'a> {
         pairs
     }
 
-    /// The margin of a link and a body, metres; none where the pair does not count.
-    pub fn margin(&self, link: u32, body: &Body) -> Option<f64> {
-        let admits = || self.sieve.disregards_allowed_collisions() || self.snapshot.admits_link(self.robot, link, body);
+    /// The margin of a part and a body of the scene, metres; none where the pair does not count.
+    pub fn margin(&self, part: &LinkPart, body: &Body) -> Option<f64> {
+        if !self.sieve.passes(body) || self.held.binary_search(&body.id).is_ok() {
+            return None;
+        }
+        match part.held {
+            None => self.margin_of_link(part.link, body),
+            Some(held) => self.margin_of_bodies(held, body),
+        }
+    }
+
+    fn margin_of_link(&self, link: u32, body: &Body) -> Option<f64> {
+        let admits = self.sieve.disregards_allowed_collisions() || self.snapshot.admits_link(self.robot, link, body);
         let own = || self.snapshot.margin(self.robot.link(link), body.member()).unwrap_or(self.context.margin);
-        (self.sieve.passes(body) && admits()).then(own)
+        admits.then(own)
+    }
+
+    fn margin_of_bodies(&self, one: &Body, other: &Body) -> Option<f64> {
+        let admits = if self.sieve.disregards_allowed_collisions() {
+            one.meets(other.layers, other.mask)
+        } else {
+            self.snapshot.admits(one, other)
+        };
+        let own = || self.snapshot.margin(one.member(), other.member()).unwrap_or(self.context.margin);
+        admits.then(own)
     }
 
     pub fn placed(&self) -> Placed {
@@ -111,21 +183,18 @@ impl<'a> RobotParts<'a> {
 
     /// Where its link puts a shape.
     pub fn place_part(&self, part: usize, placed: &mut Placed) {
-        let LinkPart { link, of_link, .. } = &self.parts[part];
-        let at = placed.poses[*link as usize].compose(&of_link.pose).placement();
+        let LinkPart { link, shape, in_link, .. } = &self.parts[part];
+        let at = placed.poses[*link as usize].compose(in_link).placement();
         placed.placements[part] = at;
-        placed.bounds[part] = of_link.shape.placed_bounds(&at).expect("the shapes of links are bounded");
+        placed.bounds[part] = shape.placed_bounds(&at).expect("the shapes of links and of held bodies are bounded");
     }
 
     pub fn party<'s>(&'s self, part: usize, placed: &'s Placed) -> Party<'s> {
-        let LinkPart { link, shape_index, .. } = self.parts[part];
-        let side = Side::Link { link, shape: shape_index, subshape: 0 };
-        Party { side, shape: self.parts[part].shape(), at: &placed.placements[part] }
-    }
-}
-
-impl LinkPart<'_> {
-    pub fn shape(&self) -> &Shape {
-        &self.of_link.shape
+        let LinkPart { link, shape_index, shape, held, .. } = self.parts[part];
+        let side = match held {
+            None => Side::Link { link, shape: shape_index, subshape: 0 },
+            Some(body) => Side::Body { id: body.id, subshape: 0 },
+        };
+        Party { side, shape, at: &placed.placements[part] }
     }
 }

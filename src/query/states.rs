@@ -1,11 +1,12 @@
 //! A robot in many states: against itself and against the scene.
 
 use super::answer::{ItemAnswer, Refused, Side};
+use super::overlay::Place;
 use super::pairs::finish;
 use super::request::{CheckStates, Wants};
 use super::robot_parts::{Placed, RobotParts, SelfPair};
 use super::search::{Party, Plan, Search};
-use crate::scene::{BodyId, Snapshot};
+use crate::scene::BodyId;
 
 /// Box distances are rounded down by this factor, so that none is above the true one.
 pub(super) const ROUNDING_DOWN: f64 = 1.0 - 4.0 * f64::EPSILON;
@@ -26,8 +27,8 @@ pub(super) struct Scratch {
 }
 
 impl<'a> States<'a> {
-    pub fn new(snapshot: &'a Snapshot, request: &'a CheckStates) -> Result<Self, Refused> {
-        let robot = RobotParts::new(snapshot, &request.robot, &request.context)?;
+    pub fn new(world: Place<'a>, request: &'a CheckStates) -> Result<Self, Refused> {
+        let robot = RobotParts::in_world(world, &request.robot, &request.context)?;
         let width = robot.model.degrees_of_freedom();
         let given = request.positions.len();
         if !given.is_multiple_of(width) {
@@ -38,10 +39,15 @@ impl<'a> States<'a> {
     }
 
     /// With every pair that is not proved farther than `within` metres.
-    pub fn clearance(snapshot: &'a Snapshot, request: &'a CheckStates, within: f64) -> Result<Self, Refused> {
-        let states = Self::new(snapshot, request)?;
+    pub fn clearance(world: Place<'a>, request: &'a CheckStates, within: f64) -> Result<Self, Refused> {
+        let states = Self::new(world, request)?;
         let wants = Wants { distance: true, pairs: true, ..states.wants };
         Ok(Self { wants, within: Some(within), ..states })
+    }
+
+    /// How many joints move.
+    pub fn width(&self) -> usize {
+        self.robot.model.degrees_of_freedom()
     }
 
     /// A robot that cannot move has one state, of no numbers.
@@ -182,9 +188,11 @@ impl<'a> PartOffers<'a> {
 
     fn offer(&self, search: &mut Search, id: BodyId) {
         let body = self.robot.snapshot.body(id).expect("the broad phase holds bodies of the snapshot");
-        if let Some(margin) = self.robot.margin(self.robot.parts[self.part].link, body) {
+        if let Some(margin) = self.robot.margin(&self.robot.parts[self.part], body) {
             let other = Party { side: Side::Body { id, subshape: 0 }, shape: &body.shape, at: &body.placement };
-            search.offer(&self.party, &other, margin);
+            // A link is side A, and of two bodies the lower id.
+            let (a, b) = if self.party.side < other.side { (&self.party, &other) } else { (&other, &self.party) };
+            search.offer(a, b, margin);
         }
     }
 }

@@ -99,6 +99,7 @@ impl Snapshot {
     fn put_voxels(&mut self, body: &Body, map: Voxels) -> Result<(), Fault> {
         let kind = body.shape.kind();
         let shape = body.shape.with_voxels(map).ok_or_else(|| Reason::NotVoxels { kind }.of("body"))?;
+        self.changes.body(body.id, ChangeKinds::RESHAPED);
         let bounds = shape.placed_bounds(&body.placement);
         self.put(Body { shape: Arc::new(shape), bounds, ..Body::clone(body) });
         Ok(())

@@ -80,6 +80,8 @@ pub struct Changes {
     robots: Vec<RobotChange>,
     /// Entries for pairs that were made, replaced by others or taken back, each in both orders, sorted.
     entries: Vec<(PartyKey, PartyKey)>,
+    /// What the groups of `entries` were called, sorted.
+    groups: Vec<(PartyKey, Arc<str>)>,
 }
 
 impl Changes {
@@ -106,6 +108,17 @@ impl Changes {
     #[must_use]
     pub fn has_entries(&self) -> bool {
         !self.entries.is_empty()
+    }
+
+    /// The two sides of each entry, once.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (PartyKey, PartyKey)> {
+        self.entries.iter().copied().filter(|(a, b)| a <= b)
+    }
+
+    /// What a group of an entry was called.
+    pub(super) fn group_name(&self, key: PartyKey) -> Option<&Arc<str>> {
+        let place = self.groups.binary_search_by_key(&key, |(group, _)| *group).ok()?;
+        Some(&self.groups[place].1)
     }
 
     /// Whether an entry that speaks of the pair was made, replaced by another or taken back. It need not be the one that
@@ -151,6 +164,8 @@ struct Step {
     robots: Vec<RobotChange>,
     /// In both orders, sorted, each once.
     entries: Vec<(PartyKey, PartyKey)>,
+    /// What the groups of `entries` are called: the scene may forget them with the entry. Sorted, each once.
+    groups: Vec<(PartyKey, Arc<str>)>,
 }
 
 impl Step {
@@ -158,6 +173,7 @@ impl Step {
         self.bodies.extend_from_slice(&other.bodies);
         self.robots.extend_from_slice(&other.robots);
         self.entries.extend_from_slice(&other.entries);
+        self.groups.extend_from_slice(&other.groups);
     }
 
     /// Puts in order what was added, and makes one of what is about the same.
@@ -180,6 +196,8 @@ impl Step {
         });
         self.entries.sort_unstable();
         self.entries.dedup();
+        self.groups.sort_unstable();
+        self.groups.dedup();
     }
 }
 
@@ -190,7 +208,7 @@ pub(super) struct ChangeLog {
     steps: IdMap<Arc<Step>>,
     /// The revision that the first step leads on from.
     oldest: Revision,
-    /// What the edits of the draft changed so far; empty in a snapshot that was published.
+    /// What the edits of the draft changed so far, or those of a hypothesis; empty in a snapshot that was published.
     open: Step,
 }
 
@@ -208,8 +226,10 @@ impl ChangeLog {
         self.open.robots.push(RobotChange { name: Arc::clone(name), kinds });
     }
 
-    pub(super) fn entry(&mut self, a: PartyKey, b: PartyKey) {
+    /// `groups`: what those of the two that are groups are called.
+    pub(super) fn entry(&mut self, a: PartyKey, b: PartyKey, groups: impl IntoIterator<Item = (PartyKey, Arc<str>)>) {
         self.open.entries.extend([(a, b), (b, a)]);
+        self.open.groups.extend(groups);
     }
 
     /// Ends the draft: its changes led to `revision`. Of the steps stay those that lead on from one of the `kept` latest
@@ -224,12 +244,13 @@ impl ChangeLog {
         }
     }
 
+    /// Ends a hypothesis: what its edits changed has no revision of its own, and counts as after the one that it is made on.
+    pub(super) fn suppose(&mut self) {
+        self.open.settle();
+    }
+
     /// What does not agree with the snapshot that the log is part of.
     pub(super) fn defect(&self, revision: Revision) -> Option<&'static str> {
-        let open = &self.open;
-        if !(open.bodies.is_empty() && open.robots.is_empty() && open.entries.is_empty()) {
-            return Some("changes of a draft are in a published log");
-        }
         let whole = (self.oldest.0 + 1..=revision.0).all(|step| self.steps.get(step).is_some());
         if !whole || self.steps.len() as u64 != revision.0 - self.oldest.0 {
             return Some("the log of changes has a gap, or steps of other revisions");
@@ -239,7 +260,9 @@ impl ChangeLog {
                 && step.robots.is_sorted_by(|a, b| a.name < b.name)
                 && step.entries.is_sorted_by(|a, b| a < b)
         };
-        (!self.steps.values().all(sorted)).then_some("a step of the log of changes is not in order")
+        let hypothesis = Arc::new(self.open.clone());
+        let in_order = self.steps.values().chain([&hypothesis]).all(sorted);
+        (!in_order).then_some("a step of the log of changes is not in order")
     }
 }
 
@@ -250,12 +273,12 @@ impl Snapshot {
         self.changes.oldest
     }
 
-    /// What changed since an earlier revision of the same epoch.
+    /// What changed since an earlier revision of the same epoch; what a hypothesis changed is part of it.
     ///
     /// # Errors
     /// The revision is older than [`Snapshot::oldest_change`], or later than the snapshot's own.
     pub fn changes_since(&self, since: Revision) -> Result<Changes, NotKept> {
-        let ChangeLog { steps, oldest, open: _ } = &self.changes;
+        let ChangeLog { steps, oldest, open } = &self.changes;
         if since < *oldest {
             return Err(NotKept::Gone { asked: since, oldest: *oldest });
         }
@@ -264,10 +287,9 @@ impl Snapshot {
         }
         let mut whole = Step::default();
         (since.0 + 1..=self.revision.0).filter_map(|step| steps.get(step)).for_each(|step| whole.add(step));
-        if self.revision.0 - since.0 > 1 {
-            whole.settle();
-        }
-        let Step { bodies, robots, entries } = whole;
-        Ok(Changes { bodies, robots, entries })
+        whole.add(open);
+        whole.settle();
+        let Step { bodies, robots, entries, groups } = whole;
+        Ok(Changes { bodies, robots, entries, groups })
     }
 }

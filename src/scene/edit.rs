@@ -116,7 +116,7 @@ pub enum Edit {
 }
 
 /// A body of the scene, by id or by name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BodyRef {
     /// As the scene gave it.
     Id(BodyId),

@@ -47,6 +47,11 @@ impl Groups {
         self.keys.get(name).copied()
     }
 
+    /// What a group in use is called.
+    pub(super) fn name(&self, key: PartyKey) -> Option<&Arc<str>> {
+        key.is_group().then(|| self.groups.get(key.number()))?.map(|group| &group.name)
+    }
+
     pub(super) fn uses(&self, key: PartyKey) -> usize {
         self.groups.get(key.number()).map_or(0, |group| group.uses)
     }

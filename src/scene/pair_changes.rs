@@ -1,5 +1,7 @@
 //! How entries for pairs come and go, in the allowed-collision matrix and in the table of margins.
 
+use std::sync::Arc;
+
 use super::body_changes::{check_distance, check_group_name};
 use super::change::Fault;
 use super::party::PartyKey;
@@ -16,9 +18,10 @@ impl Snapshot {
     ) -> Result<(), Fault> {
         let (a, b) = self.pair_of_keys(a, b, limits)?;
         let before = self.allowed.get(a, b);
+        let names = self.names_of([a, b]);
         self.count_entry(before.is_some(), allowed.is_some(), (a, b), limits)?;
         if before != allowed {
-            self.changes.entry(a, b);
+            self.changes.entry(a, b, names);
         }
         self.allowed.set(a, b, allowed);
         Ok(())
@@ -36,9 +39,10 @@ impl Snapshot {
             check_distance(margin, "margin")?;
         }
         let before = self.margins.get(a, b);
+        let names = self.names_of([a, b]);
         self.count_entry(before.is_some(), margin.is_some(), (a, b), limits)?;
         if before != margin {
-            self.changes.entry(a, b);
+            self.changes.entry(a, b, names);
         }
         self.margins.set(a, b, margin);
         // Only where the largest went are all entries looked at again.
@@ -82,6 +86,12 @@ impl Snapshot {
             }
             Party::Everything => Ok(PartyKey::EVERYTHING),
         }
+    }
+
+    /// What the groups among the parties are called.
+    fn names_of(&self, parties: [PartyKey; 2]) -> impl Iterator<Item = (PartyKey, Arc<str>)> + use<> {
+        let named = |party: PartyKey| self.groups.name(party).map(|name| (party, Arc::clone(name)));
+        parties.map(named).into_iter().flatten()
     }
 
     /// Counts an entry that comes into being or goes.

@@ -3,7 +3,7 @@
 //! Geometry is never in it: a question that can be asked has a verdict.
 
 use crate::limits::LimitExceeded;
-use crate::query::Refused;
+use crate::query::{NotSupposed, Refused, field_of};
 use crate::scene::{Epoch, Reason, Refusal, Revision};
 
 /// Why a request was not answered.
@@ -106,6 +106,25 @@ impl ServiceError {
     /// An invalid field, from anything that says what is wrong.
     pub fn invalid(field: impl Into<String>, problem: impl ToString) -> Self {
         Self::Invalid { field: field.into(), problem: problem.to_string() }
+    }
+
+    /// Why the world of an overlay cannot be made; `number` says which overlay.
+    #[must_use]
+    pub fn of_overlay(error: NotSupposed, number: usize) -> Self {
+        let within = |field: &str| format!("{}.{field}", field_of(number));
+        match error {
+            NotSupposed::Edit(refusal) => {
+                let mut error = Self::from(refusal);
+                if let Self::Invalid { field, .. } | Self::EditRefused { field, .. } = &mut error {
+                    *field = within(field);
+                }
+                error
+            }
+            NotSupposed::Attached { index, field, problem } => {
+                Self::EditRefused { field: within(&format!("attached[{index}].{field}")), problem }
+            }
+            NotSupposed::HeldBefore { problem } => Self::EditRefused { field: within("edits"), problem },
+        }
     }
 }
 

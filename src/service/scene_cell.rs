@@ -120,6 +120,11 @@ impl SceneCell {
         if self.published.is_deleted() { Err(self.not_found()) } else { self.published.find(rule) }
     }
 
+    /// The newest snapshot, unless the scene is gone.
+    pub fn newest(&self) -> Result<Arc<Snapshot>, ServiceError> {
+        if self.published.is_deleted() { Err(self.not_found()) } else { Ok(self.latest()) }
+    }
+
     /// The newest snapshot, once it is newer than `told`; with revisions that come in quick succession not the next.
     pub async fn newer_than(&self, told: Revision) -> Result<Arc<Snapshot>, ServiceError> {
         let mut head = self.head.subscribe();
@@ -169,7 +174,9 @@ impl SceneCell {
         self.head.send_replace(());
     }
 
-    fn check_epoch(&self, asked: Option<Epoch>) -> Result<(), ServiceError> {
+    /// # Errors
+    /// The scene is in another epoch than the caller means.
+    pub fn check_epoch(&self, asked: Option<Epoch>) -> Result<(), ServiceError> {
         match asked {
             Some(asked) if asked != self.epoch => Err(ServiceError::WrongEpoch { asked, current: self.epoch }),
             Some(_) | None => Ok(()),

@@ -7,22 +7,24 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 use super::ServiceError;
-use super::admission::Admission;
+use super::admission::{Admission, Permit};
 use super::assets::{ContentHash, Stored, Upload};
 use super::contact_watch::ContactWatch;
 use super::deadline::{Deadline, Patience, Stop};
 use super::library::{Library, UnusableMesh};
 use super::mesh_cards::{MeshCardRequest, TimedMeshCard};
+use super::pose_feed::PoseFeed;
 use super::revision_rule::RevisionRule;
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
 use super::scene_health::SceneHealth;
+use super::scene_watch::SceneWatch;
 use super::scenes::{SceneSummary, Scenes};
 use super::view::View;
 use super::workers::{Workers, prepare};
 use crate::limits::Limits;
 use crate::query::ContactQuestion;
-use crate::scene::{Applied, Epoch, SceneOptions, Snapshot};
+use crate::scene::{Applied, Epoch, Revision, SceneOptions, Snapshot};
 
 /// What a service is made with.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -70,6 +72,7 @@ pub struct Service {
     scenes: Scenes,
     queries: Admission,
     watchers: Admission,
+    streams: Admission,
     loads: Admission,
     doors: Mutex<Vec<Door>>,
     draining: watch::Sender<bool>,
@@ -91,6 +94,7 @@ impl Service {
             scenes: Scenes::new(limits),
             queries: Admission::new("max_queries_in_flight", limits.max_queries_in_flight),
             watchers: Admission::new("max_watchers", limits.max_watchers),
+            streams: Admission::new("max_streams", limits.max_streams),
             loads,
             doors: Mutex::default(),
             draining: watch::Sender::new(false),
@@ -138,7 +142,7 @@ impl Service {
         self.doors.lock().unwrap_or_else(PoisonError::into_inner).push(door);
     }
 
-    /// Callers that watch contacts.
+    /// Callers that watch scenes or contacts.
     #[must_use]
     pub fn watchers(&self) -> usize {
         self.watchers.under_way()
@@ -309,12 +313,63 @@ impl Service {
         Ok(ContactWatch::new(Arc::clone(self), cell, (question, first), patience, permit))
     }
 
+    /// Watches a scene, from a revision of the given epoch on or from nothing.
+    ///
+    /// # Errors
+    /// A scene that is not there or is in another epoch, or a cap.
+    pub fn watch_scene(
+        self: &Arc<Self>,
+        scene: &str,
+        epoch: Option<Epoch>,
+        from: Option<Revision>,
+        patience: Patience,
+    ) -> Result<SceneWatch, ServiceError> {
+        self.check_open()?;
+        let permit = self.watchers.enter()?;
+        let cell = self.scenes.get(scene)?;
+        cell.check_epoch(epoch)?;
+        Ok(SceneWatch::new(Arc::clone(self), cell, from, patience, permit))
+    }
+
+    /// Takes poses for a scene, with at least `interval` between two revisions.
+    ///
+    /// # Errors
+    /// A scene that is not there or is in another epoch, or a cap.
+    pub fn feed_poses(
+        self: &Arc<Self>,
+        scene: &str,
+        epoch: Option<Epoch>,
+        interval: Duration,
+        patience: Patience,
+    ) -> Result<PoseFeed, ServiceError> {
+        self.check_open()?;
+        let permit = self.streams.enter()?;
+        let cell = self.scenes.get(scene)?;
+        cell.check_epoch(epoch)?;
+        Ok(PoseFeed::new(Arc::clone(self), cell, interval, patience, permit))
+    }
+
+    /// A place for a stream of questions.
+    ///
+    /// # Errors
+    /// The daemon drains, or all places are taken.
+    pub fn enter_stream(&self) -> Result<Permit, ServiceError> {
+        self.check_open()?;
+        Ok(self.streams.enter()?)
+    }
+
+    /// Streams of poses and questions.
+    #[must_use]
+    pub fn streams(&self) -> usize {
+        self.streams.under_way()
+    }
+
     pub(super) fn workers(&self) -> &Workers {
         &self.workers
     }
 
     /// Becomes true when the daemon drains.
-    pub(super) fn draining(&self) -> watch::Receiver<bool> {
+    pub fn draining(&self) -> watch::Receiver<bool> {
         self.draining.subscribe()
     }
 

@@ -14,7 +14,7 @@ use crate::limits::{LimitExceeded, Limits};
 use crate::query::{
     Answer, Answers, CastItem, CastRays, CastShapes, Casts, CheckMotions, CheckMovingPairs, CheckStates, Clearance,
     ClearanceOf, Context, ItemBatch, MovingPairs, NearestBodies, NearestItem, Neighbours, Overlap, OverlapItem,
-    Overlaps, PairQuery, Part, Prepared, Rays, Verdict,
+    Overlaps, Overlay, Overlays, PairQuery, Part, Prepared, Rays, Verdict, World, Worlds,
 };
 use crate::scene::{Revision, Snapshot};
 
@@ -22,6 +22,8 @@ use crate::scene::{Revision, Snapshot};
 #[derive(Debug)]
 pub struct View {
     found: Found,
+    /// The snapshot as it is, or what is supposed on it.
+    worlds: Worlds,
     stop: Stop,
     limits: Limits,
 }
@@ -33,13 +35,46 @@ const PARTS_PER_THREAD: usize = 4;
 
 impl View {
     pub(super) fn new(found: Found, stop: Stop, limits: &Limits) -> Self {
-        Self { found, stop, limits: limits.clone() }
+        let worlds = Worlds::as_is(&found.snapshot);
+        Self { found, worlds, stop, limits: limits.clone() }
     }
 
-    /// What is asked.
+    /// The same with overlays: what is asked then is asked as if their edits had been applied.
+    ///
+    /// # Errors
+    /// A cap, an edit that cannot be made, a body that cannot be held, an item whose alternative is not there, or a deadline
+    /// that came first.
+    pub fn supposing(&self, overlays: &Overlays) -> Result<Self, ServiceError> {
+        let changes = |overlay: &Overlay| overlay.edits.len() + overlay.attached.len();
+        let edits = changes(&overlays.common) + overlays.alternatives.iter().map(changes).sum::<usize>();
+        LimitExceeded::check("max_overlays", overlays.alternatives.len() + 1, self.limits.max_overlays)?;
+        LimitExceeded::check("max_overlay_edits", edits, self.limits.max_overlay_edits)?;
+        let under = |base: &World, overlay: &Overlay, number: usize| {
+            if self.stop.now() {
+                return Err(ServiceError::DeadlineExceeded);
+            }
+            base.under(overlay, &self.limits).map_err(|error| ServiceError::of_overlay(error, number))
+        };
+        let common = under(&World::as_is(&self.found.snapshot), &overlays.common, 0)?;
+        let alternatives = overlays.alternatives.par_iter().enumerate();
+        let made: Vec<Result<World, ServiceError>> =
+            alternatives.map(|(index, overlay)| under(&common, overlay, index + 1)).collect();
+        // Of several that cannot be, the first is told, whatever thread was first.
+        let alternatives = made.into_iter().collect::<Result<_, ServiceError>>()?;
+        let worlds = Worlds::new(common, alternatives, overlays.of_item.clone())?;
+        Ok(Self { found: self.found.clone(), worlds, stop: self.stop.clone(), limits: self.limits.clone() })
+    }
+
+    /// What is asked, with the overlay of all items.
     #[must_use]
     pub fn snapshot(&self) -> &Arc<Snapshot> {
-        &self.found.snapshot
+        &self.worlds.common().snapshot
+    }
+
+    /// What is asked, with all overlays.
+    #[must_use]
+    pub fn worlds(&self) -> &Worlds {
+        &self.worlds
     }
 
     /// The oldest revision that could be asked when the snapshot was looked up; not later than it.
@@ -52,7 +87,7 @@ impl View {
     /// A cap, a question that cannot be asked, or a deadline that came before any answer.
     pub fn check_states(&self, question: &CheckStates) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
-        self.answer(&Prepared::check_states(self.snapshot(), question)?, &question.context)
+        self.answer(&Prepared::check_states(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
@@ -60,7 +95,7 @@ impl View {
     pub fn check_motions(&self, question: &CheckMotions) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
         LimitExceeded::check("max_motion_states", question.max_states, self.limits.max_motion_states)?;
-        self.answer(&Prepared::check_motions(self.snapshot(), question)?, &question.context)
+        self.answer(&Prepared::check_motions(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
@@ -76,21 +111,21 @@ impl View {
                 &pairs.context
             }
         };
-        self.answer(&Prepared::clearance(self.snapshot(), question)?, context)
+        self.answer(&Prepared::clearance(&self.worlds, question)?, context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::collide(self.snapshot(), question)?, &question.context)
+        self.answer(&Prepared::collide(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::distance(self.snapshot(), question)?, &question.context)
+        self.answer(&Prepared::distance(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors

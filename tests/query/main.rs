@@ -9,6 +9,7 @@ mod contacts;
 mod edges;
 mod motions;
 mod moving_scene;
+mod overlays;
 mod random_motions;
 mod ur5;
 mod workload;

@@ -5,5 +5,6 @@ mod conformance;
 mod connections;
 mod histories;
 mod process;
+mod streams;
 mod support;
 mod watching;

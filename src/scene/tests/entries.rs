@@ -116,3 +116,55 @@ fn the_scene_changes_which_links_are_held_against_each_other() {
     apply(&mut scene, &[allow(link("arm", "upper"), link("arm", "base"), Some(false))]);
     assert_eq!(pairs(&scene), [(0, 1), (0, 2)]);
 }
+
+/// What a copy of the scene is told: all entries by name, and of changed ones what holds now, under the names of groups that
+/// the scene has forgotten, too.
+#[test]
+fn entries_are_told_as_they_were_made() {
+    let mut scene = scene_of([ball("a", 0.0), ball("b", 2.0), grouped("c", &["g"])]);
+    apply(&mut scene, &[add_arm("arm", &arm())]);
+    let id = |name: &str| Party::Body(scene.snapshot().body_named(name).unwrap().id.into());
+    let (a, b) = (id("a"), id("b"));
+    let first = scene.snapshot().revision();
+    let edits = [
+        allow(one("a"), one("b"), Some(true)),
+        margin(one("b"), one("a"), Some(0.5)),
+        allow(group("g"), link("arm", "upper"), Some(false)),
+        margin(Party::Robot("arm".to_owned()), Party::Everything, Some(0.25)),
+        margin(group("later"), group("later"), Some(0.125)),
+    ];
+    apply(&mut scene, &edits);
+    let entry = |a: Party, b: Party, allowed, margin| PairEntry { a, b, allowed, margin };
+    let robot = || Party::Robot("arm".to_owned());
+    let has = |entries: &[PairEntry], wanted: &PairEntry| {
+        let turned = PairEntry { a: wanted.b.clone(), b: wanted.a.clone(), ..wanted.clone() };
+        entries.contains(wanted) || entries.contains(&turned)
+    };
+    let expected = [
+        entry(a.clone(), b.clone(), Some(true), Some(0.5)),
+        entry(group("g"), link("arm", "upper"), Some(false), None),
+        entry(robot(), Party::Everything, None, Some(0.25)),
+        entry(group("later"), group("later"), None, Some(0.125)),
+    ];
+    let snapshot = scene.snapshot();
+    let changed = snapshot.changed_entries(&snapshot.changes_since(first).unwrap());
+    for told in [snapshot.pair_entries(), changed] {
+        assert_eq!(told.len(), expected.len(), "{told:?}");
+        assert!(expected.iter().all(|entry| has(&told, entry)), "{told:?}");
+    }
+    // A group that is forgotten with its entry, one that is forgotten and comes again, and a robot that takes its entries along.
+    let second = snapshot.revision();
+    let edits = [margin(group("later"), group("later"), None), allow(group("g"), link("arm", "upper"), None)];
+    apply(&mut scene, &edits);
+    apply(&mut scene, &[Edit::RemoveBody { body: "c".into() }, Edit::RemoveRobot { robot: "arm".to_owned() }]);
+    apply(&mut scene, &[allow(group("g"), group("g"), Some(true)), allow(one("a"), one("b"), None)]);
+    let snapshot = scene.snapshot();
+    let told = snapshot.changed_entries(&snapshot.changes_since(second).unwrap());
+    let expected = [
+        entry(group("later"), group("later"), None, None),
+        entry(group("g"), group("g"), Some(true), None),
+        entry(a, b, None, Some(0.5)),
+    ];
+    assert!(expected.iter().all(|entry| has(&told, entry)) && told.len() == expected.len(), "{told:?}");
+    assert_eq!(snapshot.pair_entries().len(), 2);
+}

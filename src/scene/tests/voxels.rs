@@ -79,3 +79,18 @@ fn edits_of_maps_that_cannot_be_are_refused_as_a_whole() {
         assert_eq!((cells(&scene.snapshot(), "map"), scene.snapshot().revision()), (0, Revision(1)));
     }
 }
+
+/// It did not: watched contacts missed what grew into a map.
+#[test]
+fn an_edited_map_has_changed() {
+    let mut scene = scene_of([map("map")]);
+    let before = scene.snapshot().revision();
+    apply(&mut scene, &[insert("map", &[[2.5, 0.5, 0.5]])]);
+    apply(&mut scene, &[clear("map", [2.4; 3], [2.6; 3])]);
+    let snapshot = scene.snapshot();
+    let id = snapshot.body_named("map").unwrap().id;
+    for since in [before, Revision(before.0 + 1)] {
+        let changed = snapshot.changes_since(since).unwrap();
+        assert_eq!(changed.bodies(), [BodyChange { id, kinds: ChangeKinds::RESHAPED }]);
+    }
+}

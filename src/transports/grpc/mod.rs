@@ -13,7 +13,8 @@ mod robots;
 mod scenes;
 mod server;
 mod status;
+mod streams;
 
 pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
 pub use door::{BindError, Config, Listening};
-pub use status::status_of;
+pub use status::{query_error, status_of};

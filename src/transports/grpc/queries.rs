@@ -1,18 +1,20 @@
 //! The service `Queries`.
 
-use tonic::{Request, Response, Status};
+use tonic::{Request, Response, Status, Streaming};
 
 use super::contacts::ContactStream;
 use super::grpc_timeout::grpc_timeout;
 use super::handlers::{Handlers, respond};
+use super::streams::MessageStream;
 use crate::service::ServiceError;
-use crate::transports::requests;
+use crate::transports::requests::{self, QueryMessages};
 use crate::transports::wire::v1;
 use crate::transports::wire::v1::queries_server::Queries;
 
 #[tonic::async_trait]
 impl Queries for Handlers {
     type WatchContactsStream = ContactStream;
+    type QueryStreamStream = MessageStream<QueryMessages<Streaming<v1::QueryStreamRequest>>>;
 
     async fn check_states(
         &self,
@@ -84,6 +86,13 @@ impl Queries for Handlers {
         request: Request<v1::WatchContactsRequest>,
     ) -> Result<Response<ContactStream>, Status> {
         respond(self.watch(request).await)
+    }
+
+    async fn query_stream(
+        &self,
+        request: Request<Streaming<v1::QueryStreamRequest>>,
+    ) -> Result<Response<Self::QueryStreamStream>, Status> {
+        respond(self.questions(request))
     }
 }
 

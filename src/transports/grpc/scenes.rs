@@ -1,14 +1,18 @@
 //! The service `Scenes`.
 
-use tonic::{Request, Response, Status};
+use tonic::{Request, Response, Status, Streaming};
 
 use super::handlers::{Handlers, respond};
-use crate::transports::requests;
+use super::streams::MessageStream;
+use crate::transports::requests::{self, PoseMessages, SceneMessages};
 use crate::transports::wire::v1;
 use crate::transports::wire::v1::scenes_server::Scenes;
 
 #[tonic::async_trait]
 impl Scenes for Handlers {
+    type WatchStream = MessageStream<SceneMessages>;
+    type PoseStreamStream = MessageStream<PoseMessages<Streaming<v1::PoseStreamRequest>>>;
+
     async fn create_scene(
         &self,
         request: Request<v1::CreateSceneRequest>,
@@ -43,5 +47,16 @@ impl Scenes for Handlers {
 
     async fn apply(&self, request: Request<v1::ApplyRequest>) -> Result<Response<v1::ApplyResponse>, Status> {
         self.answer(request, requests::apply).await
+    }
+
+    async fn watch(&self, request: Request<v1::WatchRequest>) -> Result<Response<Self::WatchStream>, Status> {
+        respond(self.watch_scene(&request))
+    }
+
+    async fn pose_stream(
+        &self,
+        request: Request<Streaming<v1::PoseStreamRequest>>,
+    ) -> Result<Response<Self::PoseStreamStream>, Status> {
+        respond(self.poses(request))
     }
 }

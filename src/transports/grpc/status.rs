@@ -5,6 +5,7 @@ use tonic::metadata::MetadataMap;
 use tonic::{Code, Status};
 
 use crate::service::ServiceError;
+use crate::transports::wire::v1;
 use crate::transports::wire::v1::ErrorReason;
 
 /// The status of an error.
@@ -24,6 +25,14 @@ pub fn status_of(error: &ServiceError) -> Status {
         put(key, value);
     }
     Status::with_metadata(code, error.to_string(), metadata)
+}
+
+/// The same as a message, for errors that do not end a stream.
+#[must_use]
+pub fn query_error(error: &ServiceError) -> v1::QueryError {
+    let (code, reason) = code_of(error);
+    let details = details_of(error).into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    v1::QueryError { code: code.into(), reason: reason.into(), message: error.to_string(), details }
 }
 
 fn code_of(error: &ServiceError) -> (Code, ErrorReason) {

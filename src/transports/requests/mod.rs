@@ -5,17 +5,23 @@
 
 mod assets;
 mod motions;
+mod poses;
 mod queries;
+mod query_stream;
 mod robots;
 mod scenes;
 mod server;
+mod watch;
 
 pub use assets::{describe_mesh, has_assets, put_asset_response};
 pub use motions::{check_motions, check_path, clearance};
+pub use poses::{PoseMessages, pose_stream};
 pub use queries::{
     cast_rays, cast_shapes, check_moving_pairs, check_states, collide, distance, nearest_bodies, overlap,
     watch_contacts,
 };
+pub use query_stream::{QueryMessages, query_stream};
 pub use robots::{get_robot, list_robots, load_robot};
 pub use scenes::{apply, create_scene, delete_scene, get_scene, get_scene_health, list_scenes};
 pub use server::get_server_info;
+pub use watch::{SceneMessages, watch};

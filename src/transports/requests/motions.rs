@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::queries::{answer, ask};
+use super::queries::{answer, suppose};
 use crate::query::Answer;
 use crate::service::{Service, ServiceError, View};
 use crate::transports::wire::{from_proto, to_proto, v1};
@@ -48,7 +48,7 @@ pub async fn clearance(
     timeout: Option<Duration>,
 ) -> Result<v1::ClearanceResponse, ServiceError> {
     let (context, library) = (message.context.clone(), Arc::clone(service.library()));
-    let question = move |view: &View| view.clearance(&from_proto::clearance(&message, view.snapshot(), &library)?);
+    let question = move |view: &View| view.clearance(&from_proto::clearance(&message, view.worlds(), &library)?);
     Ok(v1::ClearanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
@@ -65,5 +65,5 @@ async fn moving(
         let (motions, bulk) = to_proto::motions(&answer, form);
         Ok((to_proto::answer(&answer, form), motions, bulk))
     };
-    ask(service, context, timeout, encoded).await
+    suppose(service, context, timeout, encoded, |(answer, _, _), added| answer.added_bodies = added).await
 }

@@ -31,7 +31,7 @@ pub async fn collide(
     timeout: Option<Duration>,
 ) -> Result<v1::CollideResponse, ServiceError> {
     let (context, library) = (message.context.clone(), Arc::clone(service.library()));
-    let question = move |view: &View| view.collide(&from_proto::collide(&message, view.snapshot(), &library)?);
+    let question = move |view: &View| view.collide(&from_proto::collide(&message, view.worlds(), &library)?);
     Ok(v1::CollideResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
@@ -45,7 +45,7 @@ pub async fn distance(
     timeout: Option<Duration>,
 ) -> Result<v1::DistanceResponse, ServiceError> {
     let (context, library) = (message.context.clone(), Arc::clone(service.library()));
-    let question = move |view: &View| view.distance(&from_proto::distance(&message, view.snapshot(), &library)?);
+    let question = move |view: &View| view.distance(&from_proto::distance(&message, view.worlds(), &library)?);
     Ok(v1::DistanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
 }
 
@@ -142,24 +142,26 @@ pub async fn watch_contacts(
     message: &v1::WatchContactsRequest,
     timeout: Option<Duration>,
 ) -> Result<ContactWatch, ServiceError> {
+    from_proto::no_overlays(message.context.as_ref())?;
     let target = from_proto::target(message.context.as_ref())?;
     let question = |snapshot: &_, limits: &_| from_proto::contact_question(message, snapshot, limits);
     service.watch_contacts(&target, Patience { timeout, time_budget: None }, question).await
 }
 
-/// A question whose answer is encoded where it is found.
+/// A question whose answer is encoded where it is found, and that takes no overlays.
 pub(super) async fn ask<T: Send + 'static>(
     service: &Arc<Service>,
     context: Option<v1::Context>,
     timeout: Option<Duration>,
     question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
 ) -> Result<T, ServiceError> {
+    from_proto::no_overlays(context.as_ref())?;
     let patience = from_proto::patience(timeout, context.as_ref())?;
     let target = from_proto::target(context.as_ref())?;
     service.ask(&target, patience, question).await
 }
 
-/// A question that is answered item by item.
+/// A question that is answered item by item, as if the edits of its overlays had been applied.
 pub(super) async fn answer(
     service: &Arc<Service>,
     context: Option<v1::Context>,
@@ -167,5 +169,29 @@ pub(super) async fn answer(
     question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
 ) -> Result<v1::Answer, ServiceError> {
     let form = from_proto::answer_form(context.as_ref())?;
-    ask(service, context, timeout, move |view| Ok(to_proto::answer(&question(view)?, form))).await
+    let encoded = move |view: &View| Ok(to_proto::answer(&question(view)?, form));
+    suppose(service, context, timeout, encoded, |answer, added| answer.added_bodies = added).await
+}
+
+/// Asks in the worlds of the overlays, and lets `name` put the bodies that they added into the answer.
+pub(super) async fn suppose<T: Send + 'static>(
+    service: &Arc<Service>,
+    context: Option<v1::Context>,
+    timeout: Option<Duration>,
+    question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+    name: impl FnOnce(&mut T, Vec<v1::AddedBody>) + Send + 'static,
+) -> Result<T, ServiceError> {
+    let patience = from_proto::patience(timeout, context.as_ref())?;
+    let target = from_proto::target(context.as_ref())?;
+    let (library, robots) = (Arc::clone(service.library()), Arc::clone(service.robots()));
+    let supposed = move |view: &View| match context {
+        Some(context) if from_proto::has_overlays(&context) => {
+            let view = view.supposing(&from_proto::overlays(&context, &library, &robots)?)?;
+            let mut answer = question(&view)?;
+            name(&mut answer, to_proto::added_bodies(view.worlds()));
+            Ok(answer)
+        }
+        _ => question(view),
+    };
+    service.ask(&target, patience, supposed).await
 }

@@ -8,9 +8,13 @@ mod contacts;
 mod decompositions;
 mod fields;
 mod motions;
+mod overlays;
+mod poses;
+mod query_streams;
 mod questions;
 mod revisions;
 mod robots;
+mod scene_watches;
 mod scenes;
 mod voxels;
 

@@ -1,18 +1,22 @@
 //! The doors: the same messages in, the same messages out, whatever is between.
 
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use clearance::limits::Limits;
 use clearance::service::{Config, ContactWatch, ContentHash, Service, ServiceError};
-use clearance::transports::grpc::status_of;
-use clearance::transports::requests;
+use clearance::transports::grpc::{query_error, status_of};
+use clearance::transports::requests::{self, PoseMessages, QueryMessages, SceneMessages};
 use clearance::transports::wire::v1::assets_client::AssetsClient;
 use clearance::transports::wire::v1::put_asset_request::Part;
 use clearance::transports::wire::v1::queries_client::QueriesClient;
 use clearance::transports::wire::v1::robots_client::RobotsClient;
 use clearance::transports::wire::v1::scenes_client::ScenesClient;
 use clearance::transports::wire::{to_proto, v1};
+use tokio::sync::mpsc;
+use tokio_stream::wrappers::ReceiverStream;
+use tokio_stream::{Stream, StreamExt};
 use tonic::transport::Channel;
 use tonic::{Code, Status, Streaming};
 
@@ -53,6 +57,15 @@ pub trait Contacts {
     async fn message(&mut self) -> Told<v1::WatchContactsResponse>;
 }
 
+/// A stream of messages; none at the end.
+#[allow(async_fn_in_trait, reason = "the tests know both implementations")]
+pub trait Messages<M> {
+    async fn message(&mut self) -> Told<Option<M>>;
+}
+
+/// What a caller sends, message by message.
+pub type Sent<M> = mpsc::Sender<M>;
+
 /// A way to ask the daemon.
 #[allow(async_fn_in_trait, reason = "the tests know both implementations")]
 pub trait Door {
@@ -82,6 +95,15 @@ pub trait Door {
         self.create(v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() }).await
     }
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts>;
+    async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>>;
+    async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)>;
+    async fn query_stream(&self) -> Told<(Sent<v1::QueryStreamRequest>, impl Messages<v1::QueryStreamResponse>)>;
+}
+
+/// Messages on their way.
+fn sending<M>() -> (Sent<M>, ReceiverStream<M>) {
+    let (sender, receiver) = mpsc::channel(64);
+    (sender, ReceiverStream::new(receiver))
 }
 
 /// No socket: messages are decoded and encoded, and nothing else.
@@ -180,6 +202,44 @@ impl Door for InProcess {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         let watch = requests::watch_contacts(&self.service, &request, None).await?;
         Ok(InProcessContacts { watch: Some(watch), messages: VecDeque::new() })
+    }
+
+    async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>> {
+        Ok(requests::watch(&self.service, &request, None)?)
+    }
+
+    async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)> {
+        let (sender, sent) = sending();
+        Ok((sender, requests::pose_stream(&self.service, sent.map(Ok::<_, Infallible>), None)))
+    }
+
+    async fn query_stream(&self) -> Told<(Sent<v1::QueryStreamRequest>, impl Messages<v1::QueryStreamResponse>)> {
+        let (sender, sent) = sending();
+        Ok((sender, requests::query_stream(&self.service, sent.map(Ok::<_, Infallible>), None, query_error)?))
+    }
+}
+
+impl Messages<v1::WatchResponse> for SceneMessages {
+    async fn message(&mut self) -> Told<Option<v1::WatchResponse>> {
+        Ok(Some(self.next().await?))
+    }
+}
+
+impl<S> Messages<v1::PoseStreamResponse> for PoseMessages<S>
+where
+    S: Stream<Item = Result<v1::PoseStreamRequest, Infallible>> + Unpin,
+{
+    async fn message(&mut self) -> Told<Option<v1::PoseStreamResponse>> {
+        Ok(self.next().await?)
+    }
+}
+
+impl<S> Messages<v1::QueryStreamResponse> for QueryMessages<S>
+where
+    S: Stream<Item = Result<v1::QueryStreamRequest, Infallible>> + Unpin,
+{
+    async fn message(&mut self) -> Told<Option<v1::QueryStreamResponse>> {
+        Ok(self.next().await?)
     }
 }
 
@@ -296,6 +356,26 @@ impl Door for Grpc {
 
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         Ok(QueriesClient::new(self.channel.clone()).watch_contacts(request).await?.into_inner())
+    }
+
+    async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>> {
+        Ok(ScenesClient::new(self.channel.clone()).watch(request).await?.into_inner())
+    }
+
+    async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)> {
+        let (sender, sent) = sending();
+        Ok((sender, ScenesClient::new(self.channel.clone()).pose_stream(sent).await?.into_inner()))
+    }
+
+    async fn query_stream(&self) -> Told<(Sent<v1::QueryStreamRequest>, impl Messages<v1::QueryStreamResponse>)> {
+        let (sender, sent) = sending();
+        Ok((sender, QueriesClient::new(self.channel.clone()).query_stream(sent).await?.into_inner()))
+    }
+}
+
+impl<M> Messages<M> for Streaming<M> {
+    async fn message(&mut self) -> Told<Option<M>> {
+        Ok(Streaming::message(self).await?)
     }
 }
 

@@ -7,7 +7,7 @@
 Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are :class:`ClearanceError`.
 """
 
-from .answers import Applied, Bracket, Cost, ItemAnswer, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
+from .answers import Applied, Bracket, Cost, ItemAnswer, ItemAnswers, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
 from .casts import (
     CastHit,
     CastItem,
@@ -51,6 +51,7 @@ from .errors import (
     Unavailable,
 )
 from .motions import MotionsAnswer, along
+from .overlays import WhatIf, attach, overlay
 from .poses import pose, pose_from_matrix, random_pose
 from .robots import Joint, Robot
 from .shapes import (
@@ -73,6 +74,7 @@ from .shapes import (
     triangle,
     voxels,
 )
+from .streams import PosesMade, PoseStream, SceneCopy, SceneStep, SceneWatch
 
 __all__ = [
     "Applied",
@@ -94,6 +96,7 @@ __all__ = [
     "Grazed",
     "InvalidRequest",
     "ItemAnswer",
+    "ItemAnswers",
     "Joint",
     "LimitExceeded",
     "MeshCard",
@@ -102,18 +105,25 @@ __all__ = [
     "NotFound",
     "OverlapItem",
     "PairAnswer",
+    "PoseStream",
+    "PosesMade",
     "RaysAnswer",
     "RevisionGone",
     "Robot",
     "Scene",
+    "SceneCopy",
+    "SceneStep",
+    "SceneWatch",
     "Side",
     "StatesAnswer",
     "Unavailable",
     "Verdict",
+    "WhatIf",
     "add_body",
     "add_robot",
     "allow_collision",
     "along",
+    "attach",
     "ball_region",
     "ball_swept",
     "body",
@@ -136,6 +146,7 @@ __all__ = [
     "move_body",
     "move_robot",
     "moving",
+    "overlay",
     "plane",
     "point",
     "point_cloud",

@@ -178,6 +178,19 @@ class ItemAnswer:
         )
 
 
+class ItemAnswers(list[ItemAnswer]):
+    """The answers to all items of a question, in their order."""
+
+    #: Names of the bodies that overlays added, by the number of the overlay (0: the common one) and the body's id.
+    added: dict[tuple[int, int], str]
+
+    @classmethod
+    def of(cls, answer: messages.Answer) -> ItemAnswers:
+        answers = cls(ItemAnswer.of(item) for item in answer.items)
+        answers.added = {(body.overlay, body.id): body.name for body in answer.added_bodies}
+        return answers
+
+
 @dataclass(frozen=True)
 class Brackets:
     """Brackets of all items of a batch as arrays; NaN where an item has no such pair."""

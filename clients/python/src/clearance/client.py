@@ -10,17 +10,19 @@ import grpc
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .answers import Applied, ItemAnswer, MeshCard, StatesAnswer
+from .answers import Applied, ItemAnswers, MeshCard, StatesAnswer
 from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, rays_request
 from .contacts import ContactWatch
 from .edits import BodyName, body_ref
 from . import motions as motion_messages
-from .errors import translated
+from .errors import refused, translated
 from .motions import MotionsAnswer
+from .overlays import WhatIf
 from .poses import Vector, vec3
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_format, mesh_mode
+from .streams import PoseStream, SceneCopy, SceneWatch
 from .v1 import cast_pb2 as cast
 from .v1 import contact_pb2 as contact
 from .v1 import geometry_pb2 as geometry
@@ -29,6 +31,7 @@ from .v1 import motion_pb2 as motion
 from .v1 import query_pb2 as query
 from .v1 import robot_pb2, scene_pb2
 from .v1 import service_pb2 as service
+from .v1 import stream_pb2 as stream
 from .v1.service_pb2_grpc import AssetsStub, QueriesStub, RobotsStub, ScenesStub, ServerStub
 
 #: The port `clearance serve` listens on unless told otherwise.
@@ -238,6 +241,7 @@ class Scene:
         cut_off: Optional[float] = None,
         solver: str = "default",
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> StatesAnswer:
         """Is the robot free in these states?
@@ -247,7 +251,7 @@ class Scene:
         a revision. With `stop_at_first` the states after the first hit are `NOT_RUN`. `solver` names who measures each
         pair, for example `gjk_polyak`; a state with a pair that it does not take is `INVALID_INPUT`.
         """
-        context = self._context(want, margin, cut_off, solver, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least, what_if)
         context.answer_form = query.ANSWER_FORM_BULK
         request = self._states_request(context, robot, positions, stop_at_first)
         with translated():
@@ -265,19 +269,20 @@ class Scene:
         cut_off: Optional[float] = None,
         solver: str = "default",
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
-    ) -> list[ItemAnswer]:
+    ) -> ItemAnswers:
         """As :meth:`check_states`, with everything there is to know: which pairs, and where.
 
         For a few states; a batch of thousands is quicker without.
         """
-        context = self._context(want, margin, cut_off, solver, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least, what_if)
         context.wants.pairs = True
         request = self._states_request(context, robot, positions, stop_at_first=False)
         with translated():
             answer = self._client._queries.CheckStates(request, timeout=timeout or self._client._timeout).answer
         _check_count(positions, len(answer.items))
-        return [ItemAnswer.of(item) for item in answer.items]
+        return ItemAnswers.of(answer)
 
     def check_motions(
         self,
@@ -291,6 +296,7 @@ class Scene:
         max_states: Optional[int] = None,
         margin: float = 0.0,
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> MotionsAnswer:
         """Is the robot free all along these motions? Proved between states, not sampled.
@@ -301,7 +307,7 @@ class Scene:
         move, in metres, before what is not proved is left undecided; `max_states` how many states a motion is looked at in.
         """
         request = motion.CheckMotionsRequest(
-            context=self._context("verdict", margin, None, "default", at_least),
+            context=self._context("verdict", margin, None, "default", at_least, what_if),
             robot=robot,
             positions=motion_messages.edges(starts, goals),
             mode=motion_messages.mode(stop_at_first),
@@ -325,6 +331,7 @@ class Scene:
         max_states: Optional[int] = None,
         margin: float = 0.0,
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> MotionsAnswer:
         """Is the robot free all along a path? As :meth:`check_motions`, from each waypoint to the next.
@@ -333,7 +340,7 @@ class Scene:
         blocked.
         """
         request = motion.CheckPathRequest(
-            context=self._context("verdict", margin, None, "default", at_least),
+            context=self._context("verdict", margin, None, "default", at_least, what_if),
             robot=robot,
             waypoints=motion_messages.doubles(waypoints, "waypoints", "(n, degrees of freedom)", 2),
             mode=motion_messages.mode(stop_at_first),
@@ -355,13 +362,14 @@ class Scene:
         margin: float = 0.0,
         max_pairs: Optional[int] = None,
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
-    ) -> list[ItemAnswer]:
+    ) -> ItemAnswers:
         """Which bodies are within that many metres of each subject? Each answer's `pairs` has them all, with their brackets.
 
         Without subjects: which pairs of all bodies are that near.
         """
-        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if)
         request.items.items.extend(_subjects(subjects))
         return self._clearance(request, timeout)
 
@@ -375,10 +383,11 @@ class Scene:
         margin: float = 0.0,
         max_pairs: Optional[int] = None,
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
-    ) -> list[ItemAnswer]:
+    ) -> ItemAnswers:
         """Which pairs of links, and of links and bodies, are within that many metres in each state?"""
-        request = self._clearance_request(within, want, margin, max_pairs, at_least)
+        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if)
         request.states.robot = robot
         request.states.positions.CopyFrom(
             motion_messages.doubles(positions, "positions", "(n, degrees of freedom)", 2)
@@ -388,17 +397,18 @@ class Scene:
         return answers
 
     def _clearance_request(
-        self, within: float, want: str, margin: float, max_pairs: Optional[int], at_least: Optional[int]
+        self, within: float, want: str, margin: float, max_pairs: Optional[int], at_least: Optional[int],
+        what_if: Optional[WhatIf],
     ) -> motion.ClearanceRequest:
-        context = self._context(want, margin, None, "default", at_least)
+        context = self._context(want, margin, None, "default", at_least, what_if)
         if max_pairs is not None:
             context.max_pairs = max_pairs
         return motion.ClearanceRequest(context=context, within=within)
 
-    def _clearance(self, request: motion.ClearanceRequest, timeout: Optional[float]) -> list[ItemAnswer]:
+    def _clearance(self, request: motion.ClearanceRequest, timeout: Optional[float]) -> ItemAnswers:
         with translated():
             answer = self._client._queries.Clearance(request, timeout=timeout or self._client._timeout).answer
-        return [ItemAnswer.of(item) for item in answer.items]
+        return ItemAnswers.of(answer)
 
     def distance(
         self,
@@ -408,14 +418,15 @@ class Scene:
         cut_off: Optional[float] = None,
         solver: str = "default",
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
-    ) -> list[ItemAnswer]:
+    ) -> ItemAnswers:
         """How far is the nearest body from each subject? Without subjects: the nearest pair of all bodies."""
-        context = self._context(want, margin, cut_off, solver, at_least)
+        context = self._context(want, margin, cut_off, solver, at_least, what_if)
         request = query.DistanceRequest(context=context, items=_subjects(subjects))
         with translated():
             answer = self._client._queries.Distance(request, timeout=timeout or self._client._timeout).answer
-        return [ItemAnswer.of(item) for item in answer.items]
+        return ItemAnswers.of(answer)
 
     def collide(
         self,
@@ -424,14 +435,15 @@ class Scene:
         margin: float = 0.0,
         solver: str = "default",
         at_least: Optional[int] = None,
+        what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
-    ) -> list[ItemAnswer]:
+    ) -> ItemAnswers:
         """Which bodies does each subject touch? Without subjects: which pairs of all bodies touch."""
-        context = self._context(want, margin, None, solver, at_least)
+        context = self._context(want, margin, None, solver, at_least, what_if)
         request = query.CollideRequest(context=context, items=_subjects(subjects))
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
-        return [ItemAnswer.of(item) for item in answer.items]
+        return ItemAnswers.of(answer)
 
     def cast_rays(
         self,
@@ -568,10 +580,78 @@ class Scene:
         with translated():
             return ContactWatch(self._client._queries.WatchContacts(request, timeout=timeout))
 
+    def watch(
+        self,
+        *,
+        copy: Optional[SceneCopy] = None,
+        shapes: bool = False,
+        timeout: Optional[float] = None,
+    ) -> SceneWatch:
+        """What changes in the scene, revision by revision, for as long as it is iterated; `copy` of the watch follows.
+
+        A `copy` of an earlier watch is gone on with; without one the first step tells the whole content. With `shapes` the
+        shapes of bodies are told, too. `timeout` ends the watch after so many seconds; None: never.
+        """
+        request = stream.WatchRequest(scene=self.name, shapes=shapes)
+        if copy is not None:
+            request.epoch, request.from_revision = copy.epoch, copy.revision
+        with translated():
+            return SceneWatch(self._client._scenes.Watch(request, timeout=timeout), copy)
+
+    def pose_stream(self, *, interval: float = 0.0, timeout: Optional[float] = None) -> PoseStream:
+        """Poses of bodies and robots at a high rate; the last one wins, and is told of by revision.
+
+        `interval`: seconds that pass between two revisions of this stream, at least.
+        """
+        first = stream.PoseStreamRequest(scene=self.name, interval=interval)
+        with translated():
+            return PoseStream(lambda sent: self._client._scenes.PoseStream(sent, timeout=timeout), first)
+
+    def stream_states(
+        self,
+        robot: str,
+        batches: Iterable[ArrayLike],
+        *,
+        want: str = "distance",
+        margin: float = 0.0,
+        in_flight: int = 8,
+        at_least: Optional[int] = None,
+        timeout: Optional[float] = None,
+    ) -> Iterator[StatesAnswer]:
+        """As :meth:`check_states`, batch after batch on one stream: answers in order, while later batches are under way.
+
+        At most `in_flight` batches are being answered at a time; `batches` is not read on before there is room. A batch that is
+        refused raises when its turn comes.
+        """
+        def questions() -> Iterator[service.QueryStreamRequest]:
+            options = service.QueryStreamOptions(in_order=True, max_in_flight=in_flight)
+            yield service.QueryStreamRequest(options=options)
+            for number, positions in enumerate(batches):
+                context = self._context(want, margin, None, "default", at_least)
+                context.answer_form = query.ANSWER_FORM_BULK
+                request = self._states_request(context, robot, positions, stop_at_first=False)
+                yield service.QueryStreamRequest(id=number, check_states=request)
+
+        with translated():
+            call = self._client._queries.QueryStream(questions(), timeout=timeout or self._client._timeout)
+            try:
+                for answer in call:
+                    if answer.WhichOneof("outcome") == "error":
+                        raise refused(answer.error)
+                    yield StatesAnswer.of(answer.check_states.answer)
+            finally:
+                call.cancel()
+
     def _context(
-        self, want: str, margin: float, cut_off: Optional[float], solver: str, at_least: Optional[int]
+        self,
+        want: str,
+        margin: float,
+        cut_off: Optional[float],
+        solver: str,
+        at_least: Optional[int],
+        what_if: Optional[WhatIf] = None,
     ) -> query.Context:
-        return query.Context(
+        context = query.Context(
             scene=self.name,
             wants=_wants(want),
             margin=margin,
@@ -579,6 +659,9 @@ class Scene:
             solver=_solver(solver),
             revision=query.RevisionRule(at_least=at_least) if at_least is not None else None,
         )
+        if what_if is not None:
+            what_if.put_into(context)
+        return context
 
     def _states_request(
         self, context: query.Context, robot: str, positions: ArrayLike, stop_at_first: bool

@@ -8,6 +8,8 @@ from typing import Iterator, Optional
 
 import grpc
 
+from .v1 import service_pb2 as service
+
 
 class ClearanceError(Exception):
     """A request was refused or could not be delivered.
@@ -74,6 +76,17 @@ _KINDS: dict[grpc.StatusCode, type[ClearanceError]] = {
     grpc.StatusCode.DEADLINE_EXCEEDED: DeadlineExceeded,
     grpc.StatusCode.UNAVAILABLE: Unavailable,
 }
+
+
+_BY_NUMBER: dict[int, grpc.StatusCode] = {code.value[0]: code for code in grpc.StatusCode}
+
+
+def refused(error: service.QueryError) -> ClearanceError:
+    """The error of one question of a stream: as a call of its own would have raised."""
+    code = _BY_NUMBER.get(error.code, grpc.StatusCode.UNKNOWN)
+    reason = service.ErrorReason.Name(error.reason).removeprefix("ERROR_REASON_")
+    details = {**error.details, "clearance-reason": reason}
+    return _KINDS.get(code, ClearanceError)(code.name, f"{code.name}: {error.message}", details)
 
 
 @contextmanager

@@ -4,7 +4,8 @@ use super::Path;
 use super::answer::{NotAnAnswer, answer};
 use super::query::{context, doubles, mode, subjects, unknown_value};
 use crate::query::{
-    Answer, CheckMotions, CheckStates, Clearance, ClearanceOf, Find, ItemAnswer, Mode, MotionAnswer, Motions, PairQuery,
+    Answer, CheckMotions, CheckStates, Clearance, ClearanceOf, Find, ItemAnswer, Mode, MotionAnswer, Motions,
+    PairQuery, Worlds,
 };
 use crate::scene::Snapshot;
 use crate::service::{Library, ServiceError};
@@ -73,9 +74,10 @@ fn effort(effort: Option<&v1::MotionEffort>) -> Result<Effort, ServiceError> {
 /// A field that cannot be, a body or asset that is not there.
 pub fn clearance(
     request: &v1::ClearanceRequest,
-    snapshot: &Snapshot,
+    worlds: &Worlds,
     library: &Library,
 ) -> Result<Clearance, ServiceError> {
+    let snapshot = &worlds.common().snapshot;
     let (mode, context) = (mode(request.mode)?, context(request.context.as_ref(), snapshot)?);
     let subjects = match Path::root("subjects").required(request.subjects.as_ref())? {
         v1::clearance_request::Subjects::States(states) => {
@@ -84,7 +86,7 @@ pub fn clearance(
             ClearanceOf::States(CheckStates { robot: states.robot.clone(), positions, mode, context })
         }
         v1::clearance_request::Subjects::Items(items) => {
-            ClearanceOf::Subjects(PairQuery { items: subjects(&items.items, snapshot, library)?, mode, context })
+            ClearanceOf::Subjects(PairQuery { items: subjects(&items.items, worlds, library)?, mode, context })
         }
     };
     Ok(Clearance { subjects, within: request.within })

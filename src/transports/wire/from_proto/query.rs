@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::{Path, geometry};
 use crate::narrow_phase::Solver;
-use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
+use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants, Worlds};
 use crate::scene::{BodyId, Epoch, Revision, Snapshot};
 use crate::service::{Library, Patience, RevisionRule, Rule, ServiceError, Target};
 use crate::transports::wire::v1;
@@ -83,47 +83,39 @@ pub fn check_states(request: &v1::CheckStatesRequest, snapshot: &Snapshot) -> Re
 ///
 /// # Errors
 /// A field that cannot be, a body or asset that is not there.
-pub fn collide(
-    request: &v1::CollideRequest,
-    snapshot: &Snapshot,
-    library: &Library,
-) -> Result<PairQuery, ServiceError> {
-    pair_query(&request.items, request.mode, request.context.as_ref(), snapshot, library)
+pub fn collide(request: &v1::CollideRequest, worlds: &Worlds, library: &Library) -> Result<PairQuery, ServiceError> {
+    pair_query(&request.items, request.mode, request.context.as_ref(), worlds, library)
 }
 
 /// A question about distance.
 ///
 /// # Errors
 /// A field that cannot be, a body or asset that is not there.
-pub fn distance(
-    request: &v1::DistanceRequest,
-    snapshot: &Snapshot,
-    library: &Library,
-) -> Result<PairQuery, ServiceError> {
-    pair_query(&request.items, request.mode, request.context.as_ref(), snapshot, library)
+pub fn distance(request: &v1::DistanceRequest, worlds: &Worlds, library: &Library) -> Result<PairQuery, ServiceError> {
+    pair_query(&request.items, request.mode, request.context.as_ref(), worlds, library)
 }
 
 fn pair_query(
     items: &[v1::Subject],
     mode_number: i32,
     context_message: Option<&v1::Context>,
-    snapshot: &Snapshot,
+    worlds: &Worlds,
     library: &Library,
 ) -> Result<PairQuery, ServiceError> {
     Ok(PairQuery {
-        items: subjects(items, snapshot, library)?,
+        items: subjects(items, worlds, library)?,
         mode: mode(mode_number)?,
-        context: context(context_message, snapshot)?,
+        context: context(context_message, &worlds.common().snapshot)?,
     })
 }
 
-/// What is held against the scene, item by item.
+/// What is held against the scene, item by item, each in its own world.
 pub(super) fn subjects(
     items: &[v1::Subject],
-    snapshot: &Snapshot,
+    worlds: &Worlds,
     library: &Library,
 ) -> Result<Vec<Subject>, ServiceError> {
-    let subject = |(index, item)| subject(&Path::root_item("items", index), item, snapshot, library);
+    let subject = |(index, item)| subject(&Path::root_item("items", index), item, &worlds.of(index).snapshot, library);
     items.iter().enumerate().map(subject).collect()
 }
 

@@ -71,7 +71,7 @@ fn idempotency_key(request: &v1::ApplyRequest) -> Option<IdempotencyKey> {
     })
 }
 
-fn edit(path: &Path<'_>, edit: &v1::Edit, library: &Library, robots: &Robots) -> Result<Edit, ServiceError> {
+pub(super) fn edit(path: &Path<'_>, edit: &v1::Edit, library: &Library, robots: &Robots) -> Result<Edit, ServiceError> {
     use v1::edit::Kind;
     match path.required(edit.kind.as_ref())? {
         Kind::AddBody(edit) => add_body(&path.field("add_body"), edit, library),
@@ -172,12 +172,12 @@ fn add_body(path: &Path<'_>, edit: &v1::AddBody, library: &Library) -> Result<Ed
 }
 
 /// Moving to nowhere in particular is more likely a mistake than a wish for the origin.
-fn required_pose(path: &Path<'_>, pose: Option<&v1::Pose>) -> Result<crate::geometry::Pose, ServiceError> {
+pub(super) fn required_pose(path: &Path<'_>, pose: Option<&v1::Pose>) -> Result<crate::geometry::Pose, ServiceError> {
     path.required(pose)?;
     geometry::pose(path, pose)
 }
 
-fn body_ref(path: &Path<'_>, body: Option<&v1::BodyRef>) -> Result<BodyRef, ServiceError> {
+pub(super) fn body_ref(path: &Path<'_>, body: Option<&v1::BodyRef>) -> Result<BodyRef, ServiceError> {
     match path.required(body.and_then(|body| body.by.as_ref()))? {
         v1::body_ref::By::Id(id) => Ok(BodyRef::Id(BodyId(*id))),
         v1::body_ref::By::Name(name) => Ok(BodyRef::Name(name.clone())),

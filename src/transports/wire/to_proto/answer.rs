@@ -3,7 +3,8 @@
 use super::count;
 use super::geometry::vec3;
 use crate::narrow_phase::{Bracket, Cost, Termination};
-use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
+use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness, World, Worlds};
+use crate::scene::BodyId;
 use crate::transports::wire::from_proto::AnswerForm;
 use crate::transports::wire::v1;
 
@@ -26,7 +27,21 @@ fn frame(answer: &Answer) -> v1::Answer {
         stopped_at: answer.stopped_at.map(count),
         out_of_time: answer.out_of_time,
         cost: Some(cost(answer.cost)),
+        added_bodies: Vec::new(),
     }
+}
+
+/// The bodies that overlays added, as an answer names them.
+#[must_use]
+pub fn added_bodies(worlds: &Worlds) -> Vec<v1::AddedBody> {
+    let of_world = |(number, world): (usize, &World)| {
+        let body = |id: &BodyId| {
+            let name = world.snapshot.body(*id).map(|body| body.name.to_string());
+            v1::AddedBody { overlay: count(number), id: id.0, name: name.unwrap_or_default() }
+        };
+        world.added.iter().map(body).collect::<Vec<_>>()
+    };
+    worlds.all().iter().enumerate().flat_map(of_world).collect()
 }
 
 fn item(item: &ItemAnswer) -> v1::ItemAnswer {

@@ -11,8 +11,9 @@ mod motion;
 mod question;
 mod robot;
 mod scene;
+mod stream;
 
-pub use answer::answer;
+pub use answer::{added_bodies, answer};
 pub use cast::{
     cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
 };
@@ -24,5 +25,6 @@ pub use motion::{check_motions_request, check_path_request, clearance_request, m
 pub use question::{check_states_request, collide_request, distance_request};
 pub use robot::{load_robot_request, robot_model, robot_summary};
 pub use scene::{add_body, apply_response, body_ref, door, limit, scene_contents, scene_summary};
+pub use stream::{Told, pose_stream_response, watch_response};
 
 use count::count;

@@ -58,6 +58,7 @@ pub(super) fn context(target: &Target, context: &Context) -> v1::Context {
         time_budget: None,
         answer_form: v1::AnswerForm::Items.into(),
         solver: solver(context.solver).into(),
+        ..v1::Context::default()
     }
 }
 

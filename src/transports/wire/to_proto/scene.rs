@@ -1,7 +1,5 @@
 //! Scenes and what was done to them.
 
-use std::sync::Arc;
-
 use super::count;
 use super::geometry::{aabb, pose, shape};
 use crate::limits::Limit;
@@ -33,18 +31,13 @@ pub fn scene_contents(
     page: BodyPage,
 ) -> v1::SceneContents {
     let mut asked = snapshot.bodies_after(page.after);
-    let robot = |robot: &Arc<RobotInScene>| v1::RobotInScene {
-        name: robot.name.to_string(),
-        model: robots.id_of(&robot.model).unwrap_or_default(),
-        base: Some(pose(&robot.base)),
-    };
     v1::SceneContents {
         name: name.to_owned(),
         epoch: snapshot.epoch().0,
         revision: snapshot.revision().0,
         oldest_revision: oldest.0,
         bodies: asked.by_ref().take(page.most).map(|b| body(b)).collect(),
-        robots: snapshot.robots().map(robot).collect(),
+        robots: snapshot.robots().map(|robot| robot_in_scene(robot, robots)).collect(),
         broad_phase: broad_phase(snapshot.broad_phase().kind()),
         body_count: snapshot.body_count() as u64,
         bodies_left: asked.next().is_some(),
@@ -59,7 +52,15 @@ fn broad_phase(kind: BroadPhaseKind) -> i32 {
     })
 }
 
-fn body(body: &Body) -> v1::Body {
+pub(super) fn robot_in_scene(robot: &RobotInScene, robots: &Robots) -> v1::RobotInScene {
+    v1::RobotInScene {
+        name: robot.name.to_string(),
+        model: robots.id_of(&robot.model).unwrap_or_default(),
+        base: Some(pose(&robot.base)),
+    }
+}
+
+pub(super) fn body(body: &Body) -> v1::Body {
     v1::Body {
         id: body.id.0,
         name: body.name.to_string(),

@@ -1,4 +1,5 @@
 from clearance.v1 import geometry_pb2 as _geometry_pb2
+from clearance.v1 import overlay_pb2 as _overlay_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
@@ -150,7 +151,7 @@ class Filter(_message.Message):
     def __init__(self, groups: _Optional[_Iterable[str]] = ..., ignore: _Optional[_Iterable[_Union[_scene_pb2.BodyRef, _Mapping]]] = ..., disregard_allowed_collisions: bool = ..., layers: _Optional[int] = ..., mask: _Optional[int] = ...) -> None: ...
 
 class Context(_message.Message):
-    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver")
+    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver", "overlay", "alternatives", "item_alternatives")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     WANTS_FIELD_NUMBER: _ClassVar[int]
@@ -162,6 +163,9 @@ class Context(_message.Message):
     TIME_BUDGET_FIELD_NUMBER: _ClassVar[int]
     ANSWER_FORM_FIELD_NUMBER: _ClassVar[int]
     SOLVER_FIELD_NUMBER: _ClassVar[int]
+    OVERLAY_FIELD_NUMBER: _ClassVar[int]
+    ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
+    ITEM_ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: RevisionRule
     wants: Wants
@@ -173,7 +177,10 @@ class Context(_message.Message):
     time_budget: float
     answer_form: AnswerForm
     solver: Solver
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ...) -> None: ...
+    overlay: _overlay_pb2.Overlay
+    alternatives: _containers.RepeatedCompositeFieldContainer[_overlay_pb2.Overlay]
+    item_alternatives: _containers.RepeatedScalarFieldContainer[int]
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ..., overlay: _Optional[_Union[_overlay_pb2.Overlay, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[_overlay_pb2.Overlay, _Mapping]]] = ..., item_alternatives: _Optional[_Iterable[int]] = ...) -> None: ...
 
 class CheckStatesRequest(_message.Message):
     __slots__ = ("context", "robot", "positions", "mode")
@@ -386,7 +393,7 @@ class BulkProblem(_message.Message):
     def __init__(self, item: _Optional[int] = ..., problem: _Optional[str] = ...) -> None: ...
 
 class Answer(_message.Message):
-    __slots__ = ("epoch", "revision", "items", "bulk", "stopped_at", "out_of_time", "cost")
+    __slots__ = ("epoch", "revision", "items", "bulk", "stopped_at", "out_of_time", "cost", "added_bodies")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     ITEMS_FIELD_NUMBER: _ClassVar[int]
@@ -394,6 +401,7 @@ class Answer(_message.Message):
     STOPPED_AT_FIELD_NUMBER: _ClassVar[int]
     OUT_OF_TIME_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
+    ADDED_BODIES_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     items: _containers.RepeatedCompositeFieldContainer[ItemAnswer]
@@ -401,4 +409,5 @@ class Answer(_message.Message):
     stopped_at: int
     out_of_time: bool
     cost: Cost
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., items: _Optional[_Iterable[_Union[ItemAnswer, _Mapping]]] = ..., bulk: _Optional[_Union[BulkAnswer, _Mapping]] = ..., stopped_at: _Optional[int] = ..., out_of_time: bool = ..., cost: _Optional[_Union[Cost, _Mapping]] = ...) -> None: ...
+    added_bodies: _containers.RepeatedCompositeFieldContainer[_overlay_pb2.AddedBody]
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., items: _Optional[_Iterable[_Union[ItemAnswer, _Mapping]]] = ..., bulk: _Optional[_Union[BulkAnswer, _Mapping]] = ..., stopped_at: _Optional[int] = ..., out_of_time: bool = ..., cost: _Optional[_Union[Cost, _Mapping]] = ..., added_bodies: _Optional[_Iterable[_Union[_overlay_pb2.AddedBody, _Mapping]]] = ...) -> None: ...

@@ -6,6 +6,7 @@ from clearance.v1 import geometry_pb2 as _geometry_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
+from clearance.v1 import stream_pb2 as _stream_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
@@ -249,6 +250,93 @@ class DistanceResponse(_message.Message):
     ANSWER_FIELD_NUMBER: _ClassVar[int]
     answer: _query_pb2.Answer
     def __init__(self, answer: _Optional[_Union[_query_pb2.Answer, _Mapping]] = ...) -> None: ...
+
+class QueryStreamRequest(_message.Message):
+    __slots__ = ("id", "options", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance")
+    ID_FIELD_NUMBER: _ClassVar[int]
+    OPTIONS_FIELD_NUMBER: _ClassVar[int]
+    CHECK_STATES_FIELD_NUMBER: _ClassVar[int]
+    COLLIDE_FIELD_NUMBER: _ClassVar[int]
+    DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    CAST_RAYS_FIELD_NUMBER: _ClassVar[int]
+    CAST_SHAPES_FIELD_NUMBER: _ClassVar[int]
+    CHECK_MOVING_PAIRS_FIELD_NUMBER: _ClassVar[int]
+    OVERLAP_FIELD_NUMBER: _ClassVar[int]
+    NEAREST_BODIES_FIELD_NUMBER: _ClassVar[int]
+    CHECK_MOTIONS_FIELD_NUMBER: _ClassVar[int]
+    CHECK_PATH_FIELD_NUMBER: _ClassVar[int]
+    CLEARANCE_FIELD_NUMBER: _ClassVar[int]
+    id: int
+    options: QueryStreamOptions
+    check_states: _query_pb2.CheckStatesRequest
+    collide: _query_pb2.CollideRequest
+    distance: _query_pb2.DistanceRequest
+    cast_rays: _cast_pb2.CastRaysRequest
+    cast_shapes: _cast_pb2.CastShapesRequest
+    check_moving_pairs: _cast_pb2.CheckMovingPairsRequest
+    overlap: _cast_pb2.OverlapRequest
+    nearest_bodies: _cast_pb2.NearestBodiesRequest
+    check_motions: _motion_pb2.CheckMotionsRequest
+    check_path: _motion_pb2.CheckPathRequest
+    clearance: _motion_pb2.ClearanceRequest
+    def __init__(self, id: _Optional[int] = ..., options: _Optional[_Union[QueryStreamOptions, _Mapping]] = ..., check_states: _Optional[_Union[_query_pb2.CheckStatesRequest, _Mapping]] = ..., collide: _Optional[_Union[_query_pb2.CollideRequest, _Mapping]] = ..., distance: _Optional[_Union[_query_pb2.DistanceRequest, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysRequest, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesRequest, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsRequest, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapRequest, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesRequest, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsRequest, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathRequest, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceRequest, _Mapping]] = ...) -> None: ...
+
+class QueryStreamOptions(_message.Message):
+    __slots__ = ("in_order", "max_in_flight")
+    IN_ORDER_FIELD_NUMBER: _ClassVar[int]
+    MAX_IN_FLIGHT_FIELD_NUMBER: _ClassVar[int]
+    in_order: bool
+    max_in_flight: int
+    def __init__(self, in_order: bool = ..., max_in_flight: _Optional[int] = ...) -> None: ...
+
+class QueryStreamResponse(_message.Message):
+    __slots__ = ("id", "error", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance")
+    ID_FIELD_NUMBER: _ClassVar[int]
+    ERROR_FIELD_NUMBER: _ClassVar[int]
+    CHECK_STATES_FIELD_NUMBER: _ClassVar[int]
+    COLLIDE_FIELD_NUMBER: _ClassVar[int]
+    DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    CAST_RAYS_FIELD_NUMBER: _ClassVar[int]
+    CAST_SHAPES_FIELD_NUMBER: _ClassVar[int]
+    CHECK_MOVING_PAIRS_FIELD_NUMBER: _ClassVar[int]
+    OVERLAP_FIELD_NUMBER: _ClassVar[int]
+    NEAREST_BODIES_FIELD_NUMBER: _ClassVar[int]
+    CHECK_MOTIONS_FIELD_NUMBER: _ClassVar[int]
+    CHECK_PATH_FIELD_NUMBER: _ClassVar[int]
+    CLEARANCE_FIELD_NUMBER: _ClassVar[int]
+    id: int
+    error: QueryError
+    check_states: CheckStatesResponse
+    collide: CollideResponse
+    distance: DistanceResponse
+    cast_rays: _cast_pb2.CastRaysResponse
+    cast_shapes: _cast_pb2.CastShapesResponse
+    check_moving_pairs: _cast_pb2.CheckMovingPairsResponse
+    overlap: _cast_pb2.OverlapResponse
+    nearest_bodies: _cast_pb2.NearestBodiesResponse
+    check_motions: _motion_pb2.CheckMotionsResponse
+    check_path: _motion_pb2.CheckPathResponse
+    clearance: _motion_pb2.ClearanceResponse
+    def __init__(self, id: _Optional[int] = ..., error: _Optional[_Union[QueryError, _Mapping]] = ..., check_states: _Optional[_Union[CheckStatesResponse, _Mapping]] = ..., collide: _Optional[_Union[CollideResponse, _Mapping]] = ..., distance: _Optional[_Union[DistanceResponse, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysResponse, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesResponse, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsResponse, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapResponse, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesResponse, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsResponse, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathResponse, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceResponse, _Mapping]] = ...) -> None: ...
+
+class QueryError(_message.Message):
+    __slots__ = ("code", "reason", "message", "details")
+    class DetailsEntry(_message.Message):
+        __slots__ = ("key", "value")
+        KEY_FIELD_NUMBER: _ClassVar[int]
+        VALUE_FIELD_NUMBER: _ClassVar[int]
+        key: str
+        value: str
+        def __init__(self, key: _Optional[str] = ..., value: _Optional[str] = ...) -> None: ...
+    CODE_FIELD_NUMBER: _ClassVar[int]
+    REASON_FIELD_NUMBER: _ClassVar[int]
+    MESSAGE_FIELD_NUMBER: _ClassVar[int]
+    DETAILS_FIELD_NUMBER: _ClassVar[int]
+    code: int
+    reason: ErrorReason
+    message: str
+    details: _containers.ScalarMap[str, str]
+    def __init__(self, code: _Optional[int] = ..., reason: _Optional[_Union[ErrorReason, str]] = ..., message: _Optional[str] = ..., details: _Optional[_Mapping[str, str]] = ...) -> None: ...
 
 class GetServerInfoRequest(_message.Message):
     __slots__ = ()

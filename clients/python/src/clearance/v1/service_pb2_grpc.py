@@ -10,6 +10,7 @@ from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import service_pb2 as clearance_dot_v1_dot_service__pb2
+from clearance.v1 import stream_pb2 as clearance_dot_v1_dot_stream__pb2
 
 GRPC_GENERATED_VERSION = '1.76.0'
 GRPC_VERSION = grpc.__version__
@@ -71,6 +72,16 @@ class ScenesStub(object):
                 request_serializer=clearance_dot_v1_dot_service__pb2.ApplyRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_service__pb2.ApplyResponse.FromString,
                 _registered_method=True)
+        self.Watch = channel.unary_stream(
+                '/clearance.v1.Scenes/Watch',
+                request_serializer=clearance_dot_v1_dot_stream__pb2.WatchRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_stream__pb2.WatchResponse.FromString,
+                _registered_method=True)
+        self.PoseStream = channel.stream_stream(
+                '/clearance.v1.Scenes/PoseStream',
+                request_serializer=clearance_dot_v1_dot_stream__pb2.PoseStreamRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_stream__pb2.PoseStreamResponse.FromString,
+                _registered_method=True)
 
 
 class ScenesServicer(object):
@@ -119,6 +130,20 @@ class ScenesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def Watch(self, request, context):
+        """What changes from a revision on, for as long as the caller listens.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
+    def PoseStream(self, request_iterator, context):
+        """Poses of bodies and robots at a high rate; the last one wins.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_ScenesServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -151,6 +176,16 @@ def add_ScenesServicer_to_server(servicer, server):
                     servicer.Apply,
                     request_deserializer=clearance_dot_v1_dot_service__pb2.ApplyRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_service__pb2.ApplyResponse.SerializeToString,
+            ),
+            'Watch': grpc.unary_stream_rpc_method_handler(
+                    servicer.Watch,
+                    request_deserializer=clearance_dot_v1_dot_stream__pb2.WatchRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_stream__pb2.WatchResponse.SerializeToString,
+            ),
+            'PoseStream': grpc.stream_stream_rpc_method_handler(
+                    servicer.PoseStream,
+                    request_deserializer=clearance_dot_v1_dot_stream__pb2.PoseStreamRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_stream__pb2.PoseStreamResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -316,6 +351,60 @@ class Scenes(object):
             '/clearance.v1.Scenes/Apply',
             clearance_dot_v1_dot_service__pb2.ApplyRequest.SerializeToString,
             clearance_dot_v1_dot_service__pb2.ApplyResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def Watch(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_stream(
+            request,
+            target,
+            '/clearance.v1.Scenes/Watch',
+            clearance_dot_v1_dot_stream__pb2.WatchRequest.SerializeToString,
+            clearance_dot_v1_dot_stream__pb2.WatchResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def PoseStream(request_iterator,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.stream_stream(
+            request_iterator,
+            target,
+            '/clearance.v1.Scenes/PoseStream',
+            clearance_dot_v1_dot_stream__pb2.PoseStreamRequest.SerializeToString,
+            clearance_dot_v1_dot_stream__pb2.PoseStreamResponse.FromString,
             options,
             channel_credentials,
             insecure,
@@ -725,6 +814,11 @@ class QueriesStub(object):
                 request_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
                 _registered_method=True)
+        self.QueryStream = channel.stream_stream(
+                '/clearance.v1.Queries/QueryStream',
+                request_serializer=clearance_dot_v1_dot_service__pb2.QueryStreamRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_service__pb2.QueryStreamResponse.FromString,
+                _registered_method=True)
 
 
 class QueriesServicer(object):
@@ -815,6 +909,13 @@ class QueriesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def QueryStream(self, request_iterator, context):
+        """Questions of any kind, many at a time.
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
 
 def add_QueriesServicer_to_server(servicer, server):
     rpc_method_handlers = {
@@ -877,6 +978,11 @@ def add_QueriesServicer_to_server(servicer, server):
                     servicer.Clearance,
                     request_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.SerializeToString,
+            ),
+            'QueryStream': grpc.stream_stream_rpc_method_handler(
+                    servicer.QueryStream,
+                    request_deserializer=clearance_dot_v1_dot_service__pb2.QueryStreamRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_service__pb2.QueryStreamResponse.SerializeToString,
             ),
     }
     generic_handler = grpc.method_handlers_generic_handler(
@@ -1204,6 +1310,33 @@ class Queries(object):
             '/clearance.v1.Queries/Clearance',
             clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
             clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def QueryStream(request_iterator,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.stream_stream(
+            request_iterator,
+            target,
+            '/clearance.v1.Queries/QueryStream',
+            clearance_dot_v1_dot_service__pb2.QueryStreamRequest.SerializeToString,
+            clearance_dot_v1_dot_service__pb2.QueryStreamResponse.FromString,
             options,
             channel_credentials,
             insecure,
