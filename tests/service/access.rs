@@ -157,7 +157,7 @@ async fn without_a_token_only_health_is_open() {
     let told =
         watched("reflection", ServerReflectionClient::new(channel.clone()).server_reflection_info(request)).await;
     assert_eq!(Refusal::from(told.unwrap_err()).reason, "NO_TOKEN");
-    // A path that nothing is served at is not told apart from others.
+    // The text says what is wanted.
     let told = watched("a refusal", ScenesClient::new(channel).list_scenes(v1::ListScenesRequest {})).await;
     let status = told.unwrap_err();
     assert!(status.message().contains("authorization: Bearer"), "{status:?}");
