@@ -81,6 +81,16 @@ pub struct Limits {
     pub max_uploads_in_flight: usize,
     /// Longest time a question may take, seconds.
     pub max_deadline_seconds: usize,
+    /// Connections of the gRPC door.
+    pub max_connections: usize,
+    /// How long a connection may take to shake hands and to begin to speak, seconds.
+    pub max_handshake_seconds: usize,
+    /// Calls that one client has under way.
+    pub max_client_calls: usize,
+    /// Items and edits of one client in a second, on the mean; 0: as many as it likes.
+    pub max_client_items_per_second: usize,
+    /// Bytes of messages from and to one client in a second, on the mean; 0: as many as it likes.
+    pub max_client_bytes_per_second: usize,
 }
 
 impl Default for Limits {
@@ -122,6 +132,11 @@ impl Default for Limits {
             max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
+            max_connections: 512,
+            max_handshake_seconds: 5,
+            max_client_calls: 512,
+            max_client_items_per_second: 0,
+            max_client_bytes_per_second: 0,
         }
     }
 }
@@ -140,6 +155,7 @@ pub struct Limit {
 }
 
 const EXHAUSTED: &str = "RESOURCE_EXHAUSTED naming limit, asked and allowed";
+const EXHAUSTED_FOR_NOW: &str = "RESOURCE_EXHAUSTED naming limit, asked and allowed, and when to ask again";
 const EXHAUSTED_AT_THE_END: &str = "the stream ends with RESOURCE_EXHAUSTED naming limit, asked and allowed";
 
 impl Limits {
@@ -184,10 +200,15 @@ impl Limits {
             max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
+            max_connections,
+            max_handshake_seconds,
+            max_client_calls,
+            max_client_items_per_second,
+            max_client_bytes_per_second,
         } = *self;
         let row = |name, value: usize, unit, what_happens| Limit { name, unit, value: value as u64, what_happens };
         vec![
-            row("max_message_bytes", max_message_bytes, "bytes per message", "OUT_OF_RANGE from the gRPC layer"),
+            row("max_message_bytes", max_message_bytes, "bytes per message", EXHAUSTED),
             row("max_items", max_items, "items per question", EXHAUSTED),
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
@@ -242,6 +263,26 @@ impl Limits {
                 max_deadline_seconds,
                 "seconds per question",
                 "a longer deadline is shortened to this; a question without one gets it",
+            ),
+            row("max_connections", max_connections, "connections at a time", "the connection is closed at once"),
+            row(
+                "max_handshake_seconds",
+                max_handshake_seconds,
+                "seconds for TLS, and again for the first bytes",
+                "the connection is closed",
+            ),
+            row("max_client_calls", max_client_calls, "calls of one client at a time", EXHAUSTED),
+            row(
+                "max_client_items_per_second",
+                max_client_items_per_second,
+                "items and edits of one client per second; 0: any number",
+                EXHAUSTED_FOR_NOW,
+            ),
+            row(
+                "max_client_bytes_per_second",
+                max_client_bytes_per_second,
+                "bytes from and to one client per second; 0: any number",
+                EXHAUSTED_FOR_NOW,
             ),
         ]
     }

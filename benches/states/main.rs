@@ -153,7 +153,7 @@ impl Grpc {
     fn start(scenes: &[Arc<Snapshot>]) -> Self {
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("threads are to be had");
         let client = runtime.block_on(async {
-            let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), insecure: None };
+            let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
             let config = Settings { threads: Some(1), grpc, ..Settings::default() }.resolve().expect("defaults hold");
             let daemon = Daemon::build(&config).await.expect("a port is free");
             let address = daemon.doors()[0].address.to_string();

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
+use super::GrpcSettings;
 use crate::limits::Limits;
 use crate::service;
 
@@ -50,16 +51,6 @@ pub struct Settings {
     pub limits: toml::Table,
 }
 
-/// Choices for the gRPC door.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct GrpcSettings {
-    /// HOST:PORT; port 0 means any free one.
-    pub address: Option<String>,
-    /// Listen beyond loopback although there is neither TLS nor a token.
-    pub insecure: Option<bool>,
-}
-
 /// Why there is no configuration.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
@@ -83,6 +74,14 @@ pub enum ConfigError {
     #[error("limits: {problem}")]
     BadLimit {
         /// Which, and why.
+        problem: String,
+    },
+    /// What is said of the gRPC door does not fit together.
+    #[error("grpc.{key}: {problem}")]
+    BadDoor {
+        /// Which key.
+        key: &'static str,
+        /// Why.
         problem: String,
     },
 }
@@ -114,10 +113,7 @@ impl Settings {
             threads: self.threads.or(weaker.threads),
             drain_seconds: self.drain_seconds.or(weaker.drain_seconds),
             log: self.log.or(weaker.log),
-            grpc: GrpcSettings {
-                address: self.grpc.address.or(weaker.grpc.address),
-                insecure: self.grpc.insecure.or(weaker.grpc.insecure),
-            },
+            grpc: self.grpc.over(weaker.grpc),
             limits,
         }
     }
@@ -125,17 +121,14 @@ impl Settings {
     /// The configuration, with defaults for what nobody said.
     ///
     /// # Errors
-    /// [`ConfigError::BadLimit`].
+    /// [`ConfigError::BadLimit`] or [`ConfigError::BadDoor`].
     pub fn resolve(self) -> Result<Config, ConfigError> {
         let bad = |problem: toml::de::Error| ConfigError::BadLimit { problem: problem.message().to_owned() };
         let limits = self.limits.try_into().map_err(bad)?;
         Ok(Config {
             service: service::Config { threads: self.threads.unwrap_or(0), limits },
             #[cfg(feature = "grpc")]
-            grpc: crate::transports::grpc::Config {
-                address: self.grpc.address.unwrap_or_else(|| defaults::GRPC_ADDRESS.to_owned()),
-                insecure: self.grpc.insecure.unwrap_or(false),
-            },
+            grpc: self.grpc.resolve()?,
             drain: Duration::from_secs(self.drain_seconds.unwrap_or(defaults::DRAIN_SECONDS)),
             log: self.log.unwrap_or_else(|| defaults::LOG.to_owned()),
         })
@@ -172,5 +165,32 @@ mod tests {
         }
         let error = settings("[limits]\nmax_items = -1").resolve().unwrap_err().to_string();
         assert!(error.starts_with("limits: "), "{error}");
+    }
+
+    const SAMPLE: &str = include_str!("../../deploy/clearance.toml");
+
+    #[test]
+    fn the_sample_configuration_is_what_holds_if_nobody_says_anything() {
+        let sample = settings(SAMPLE);
+        let caps = Limits::default().table();
+        let missing: Vec<_> = caps.iter().filter(|cap| !sample.limits.contains_key(cap.name)).collect();
+        assert!(missing.is_empty(), "deploy/clearance.toml lacks {missing:?}");
+        assert_eq!(sample.resolve().unwrap(), Settings::default().resolve().unwrap());
+    }
+
+    #[test]
+    fn the_sample_configuration_has_every_key() {
+        let is_key = |line: &str| {
+            let word = line.split(' ').next().unwrap_or_default();
+            line.starts_with("[[")
+                || line.contains(" = ")
+                    && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        };
+        let uncommented: Vec<&str> =
+            SAMPLE.lines().map(|line| line.strip_prefix("# ").filter(|line| is_key(line)).unwrap_or(line)).collect();
+        let shown = format!("{:?}", settings(&uncommented.join("\n")));
+        // What nobody says is `None`.
+        assert!(!shown.contains("None"), "deploy/clearance.toml says nothing of a key: {shown}");
+        assert!(shown.contains("name: \"planner\""), "{shown}");
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::daemon_flags::DaemonFlags;
 use super::exit_code::Failed;
 use super::robot_files::RobotFiles;
 use crate::geometry::Pose;
@@ -50,14 +51,20 @@ impl Backend {
         Service::new(&service::Config::default()).map(Self::Library).map_err(Failed::failure)
     }
 
-    /// The daemon at `address`, for example `http://127.0.0.1:50551`.
+    /// The daemon at `address`, for example `http://127.0.0.1:50551`, which is shown what `flags` name.
     ///
     /// # Errors
-    /// Nobody listens there, or this program was built without gRPC.
-    pub async fn daemon(address: &str) -> Result<Self, Failed> {
-        #[cfg(feature = "grpc")]
-        return Client::connect(address).await.map(Self::Daemon).map_err(Failed::daemon);
-        #[cfg(not(feature = "grpc"))]
+    /// A file cannot be read, nobody listens there, or this program was built without gRPC.
+    #[cfg(feature = "grpc")]
+    pub async fn daemon(address: &str, flags: &DaemonFlags) -> Result<Self, Failed> {
+        let credentials = flags.credentials()?;
+        Client::connect_as(address, &credentials).await.map(Self::Daemon).map_err(Failed::daemon)
+    }
+
+    /// # Errors
+    /// This program was built without gRPC.
+    #[cfg(not(feature = "grpc"))]
+    pub async fn daemon(address: &str, _flags: &DaemonFlags) -> Result<Self, Failed> {
         Err(Failed::daemon(format!("{address}: this program was built without the feature grpc")))
     }
 

@@ -3,6 +3,7 @@
 mod backend;
 mod case;
 mod command;
+mod daemon_flags;
 #[cfg(feature = "grpc")]
 mod demo;
 mod exit_code;

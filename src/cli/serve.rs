@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use super::exit_code::Exit;
 use crate::app::{Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, StartError, defaults};
-use crate::app::{log_to_stderr, stop_signal};
+use crate::app::{TlsSettings, log_to_stderr, stop_signal};
+#[cfg(feature = "grpc")]
+use crate::transports::grpc::BindError;
 
 /// Flags of `clearance serve`. Each may also stand in the environment, or in the file.
 #[derive(clap::Args, Clone, Debug)]
@@ -14,12 +16,21 @@ pub struct Serve {
     #[arg(long, value_name = "FILE", env = "CLEARANCE_CONFIG")]
     pub config: Option<PathBuf>,
     /// Where gRPC listens; port 0 takes any free one.
-    #[arg(long, value_name = "HOST:PORT", env = "CLEARANCE_GRPC_ADDRESS",
+    #[arg(long, value_name = "HOST:PORT|unix:PATH", env = "CLEARANCE_GRPC_ADDRESS",
         help = format!("Where gRPC listens; port 0 takes any free one [default: {}]", defaults::GRPC_ADDRESS))]
     pub grpc_address: Option<String>,
-    /// Listen beyond loopback although there is neither TLS nor a token.
+    /// Listen beyond loopback although it is not both encrypted and closed to strangers.
     #[arg(long, env = "CLEARANCE_INSECURE")]
     pub insecure: bool,
+    /// Certificate that gRPC shows, and those between it and a root (PEM).
+    #[arg(long, value_name = "FILE", env = "CLEARANCE_GRPC_TLS_CERTIFICATE")]
+    pub grpc_tls_certificate: Option<PathBuf>,
+    /// Private key of that certificate (PEM).
+    #[arg(long, value_name = "FILE", env = "CLEARANCE_GRPC_TLS_KEY")]
+    pub grpc_tls_key: Option<PathBuf>,
+    /// Certificates of which one must have signed every client's (PEM) [default: clients need none]
+    #[arg(long, value_name = "FILE", env = "CLEARANCE_GRPC_TLS_CLIENT_CA")]
+    pub grpc_tls_client_ca: Option<PathBuf>,
     /// Threads that answer questions; 0: one for each core [default: 0]
     #[arg(long, value_name = "N", env = "CLEARANCE_THREADS")]
     pub threads: Option<usize>,
@@ -49,7 +60,7 @@ pub fn run(serve: &Serve, output: &mut dyn Write) -> Exit {
         Err(error) => {
             let exit = match error {
                 ConfigError::Unreadable { .. } | ConfigError::BadFile { .. } => Exit::Input,
-                ConfigError::BadLimit { .. } => Exit::Usage,
+                ConfigError::BadLimit { .. } | ConfigError::BadDoor { .. } => Exit::Usage,
             };
             failed(exit, &error)
         }
@@ -61,7 +72,16 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
         threads: serve.threads,
         drain_seconds: serve.drain_seconds,
         log: serve.log.clone(),
-        grpc: GrpcSettings { address: serve.grpc_address.clone(), insecure: serve.insecure.then_some(true) },
+        grpc: GrpcSettings {
+            address: serve.grpc_address.clone(),
+            insecure: serve.insecure.then_some(true),
+            tls: TlsSettings {
+                certificate: serve.grpc_tls_certificate.clone(),
+                key: serve.grpc_tls_key.clone(),
+                client_ca: serve.grpc_tls_client_ca.clone(),
+            },
+            ..GrpcSettings::default()
+        },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -90,11 +110,9 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
     let daemon = match Daemon::build(config).await {
         Ok(daemon) => daemon,
         Err(error) => {
-            let exit = match error {
+            let exit = match &error {
                 #[cfg(feature = "grpc")]
-                StartError::Grpc(crate::transports::grpc::BindError::NotLoopback { .. }) => Exit::Usage,
-                #[cfg(feature = "grpc")]
-                StartError::Grpc(crate::transports::grpc::BindError::Address { .. }) => Exit::Failure,
+                StartError::Grpc(error) => exit_of_grpc(error),
                 StartError::Threads(_) => Exit::Failure,
             };
             return failed(exit, &error);
@@ -107,6 +125,16 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
         Ok(Drained::Clean) => Exit::Success,
         Ok(Drained::Late) => failed(Exit::Failure, &"requests were still under way when the time to drain was over"),
         Err(error) => failed(Exit::Failure, &error),
+    }
+}
+
+/// How the process ends when the door cannot be opened.
+#[cfg(feature = "grpc")]
+fn exit_of_grpc(error: &BindError) -> Exit {
+    match error {
+        BindError::Address { .. } => Exit::Failure,
+        BindError::NotLoopback { .. } | BindError::TlsOnUnix { .. } | BindError::Origin(_) => Exit::Usage,
+        BindError::Tls(_) | BindError::Token(_) => Exit::Input,
     }
 }
 

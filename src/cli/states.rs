@@ -12,6 +12,7 @@ use indicatif::ProgressBar;
 use serde_json::Value;
 
 use super::backend::{Backend, LoadedModel, MadeScene};
+use super::daemon_flags::DaemonFlags;
 use super::exit_code::Failed;
 use super::robot_files::{Package, RobotFiles};
 use super::scene_file::{SceneEntry, SceneObject, State, StateLine, read_scenes, read_states};
@@ -45,9 +46,9 @@ pub struct States {
     /// Where `package://NAME/...` is; a package that is not named is the URDF's folder. May be given again.
     #[arg(long = "package", value_name = "NAME=DIR")]
     pub packages: Vec<Package>,
-    /// Ask this daemon instead of the library, for example `http://127.0.0.1:50551`.
-    #[arg(long, value_name = "ADDR")]
-    pub server: Option<String>,
+    /// Who is asked.
+    #[command(flatten)]
+    pub daemon: DaemonFlags,
     /// Accepted like everywhere; the output is JSON lines with or without it.
     #[arg(long)]
     pub json: bool,
@@ -89,8 +90,8 @@ pub fn run(states: &States, output: &mut dyn Write) -> Result<(), Failed> {
 async fn answer_all(states: &States, output: &mut dyn Write) -> Result<(), Failed> {
     let files = RobotFiles::read(&states.robot, states.srdf.as_deref(), &states.packages).map_err(Failed::input)?;
     let scenes = read_scenes(&states.scenes).map_err(Failed::input)?;
-    let mut backend = match &states.server {
-        Some(address) => Backend::daemon(address).await?,
+    let mut backend = match &states.daemon.server {
+        Some(address) => Backend::daemon(address, &states.daemon).await?,
         None => Backend::library()?,
     };
     let mesh = match states.mesh {

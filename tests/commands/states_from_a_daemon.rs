@@ -14,8 +14,15 @@ struct Daemon {
 
 impl Daemon {
     fn start() -> Self {
+        let mut daemon = Self::start_at("127.0.0.1:0", &[]);
+        daemon.address = format!("http://{}", daemon.address);
+        daemon
+    }
+
+    fn start_at(address: &str, more: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_clearance"))
-            .args(["serve", "--grpc-address", "127.0.0.1:0"])
+            .args(["serve", "--grpc-address", address])
+            .args(more)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()
@@ -23,7 +30,7 @@ impl Daemon {
         let mut line = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut line).unwrap();
         let address = line.trim().strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}"));
-        Self { process, address: format!("http://{address}") }
+        Self { process, address: address.to_owned() }
     }
 }
 
@@ -43,6 +50,37 @@ fn a_daemon_gives_the_same_bytes() {
         let there = states(&["--want", want, "--server", &daemon.address]);
         assert!(here == there, "--want {want}");
     }
+}
+
+#[test]
+fn a_daemon_that_wants_a_token_is_shown_one_from_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (token, wrong, config) = (path("token"), path("wrong"), path("clearance.toml"));
+    std::fs::write(&token, "a-token-of-the-planner\n").unwrap();
+    std::fs::write(&wrong, "another-token-altogether\n").unwrap();
+    let scopes = "scopes = [\"read\", \"write\"]";
+    std::fs::write(&config, format!("[[grpc.tokens]]\nname = \"planner\"\nfile = {token:?}\n{scopes}\n")).unwrap();
+    let daemon = Daemon::start_at(&format!("unix:{}", path("socket")), &["--config", &config]);
+    let here = states(&["--want", "verdict"]);
+    assert!(here == states(&["--want", "verdict", "--server", &daemon.address, "--server-token", &token]));
+    let robot = path("arm.urdf");
+    std::fs::write(&robot, r#"<robot name="arm"><link name="base"/></robot>"#).unwrap();
+    let (scenes, queries) = (path("scenes.json"), path("states.jsonl"));
+    std::fs::write(&scenes, "[]").unwrap();
+    std::fs::write(&queries, "").unwrap();
+    let asked = |more: &[&str]| {
+        let files = ["states", "--robot", &robot, "--scenes", &scenes, "--states", &queries];
+        let output = clearance(&[&files[..], more].concat());
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (code, text) = asked(&["--server", &daemon.address]);
+    assert!(code == Some(4) && text.contains("a token is needed"), "{code:?} {text}");
+    let (code, text) = asked(&["--server", &daemon.address, "--server-token", &wrong]);
+    assert!(code == Some(4) && text.contains("the token is not known"), "{code:?} {text}");
+    let (code, text) = asked(&["--server", &daemon.address, "--server-token", &path("missing")]);
+    assert!(code == Some(3) && text.contains("missing: No such file"), "{code:?} {text}");
+    assert_eq!(asked(&["--server-token", &token]).0, Some(2));
 }
 
 #[test]

@@ -71,8 +71,21 @@ async fn the_socket_changes_not_a_byte() {
 async fn a_message_beyond_the_cap_is_refused_and_the_connection_lives() {
     let grpc = Grpc::open(Limits { max_message_bytes: 10_000, ..Limits::default() }).await;
     grpc.create_scene(SCENE).await.unwrap();
-    let refusal = grpc.check_states(states(vec![0.0; 2_000])).await.unwrap_err();
-    assert_eq!(refusal.code, Code::OutOfRange, "{refusal:?}");
+    let beyond = |refusal: Refusal, asked: u64| {
+        assert_eq!((refusal.code, refusal.reason.as_str()), (Code::ResourceExhausted, "LIMIT_EXCEEDED"), "{refusal:?}");
+        let told = format!("max_message_bytes exceeded: asked for {asked}, allowed is 10000");
+        assert_eq!(refusal.message, told);
+    };
+    let question = states(vec![0.0; 2_000]);
+    let asked = question.encoded_len() as u64;
+    beyond(grpc.check_states(question).await.unwrap_err(), asked);
+    // A small question with a large answer.
+    grpc.apply(heap()).await.unwrap();
+    let question = heap_listed(1);
+    let library = InProcess { service: Arc::clone(&grpc.daemon.service) };
+    let answer = v1::CollideResponse { answer: Some(library.collide(question.clone()).await.unwrap()) };
+    assert!(question.encoded_len() < 10_000 && answer.encoded_len() > 10_000);
+    beyond(grpc.collide(question).await.unwrap_err(), answer.encoded_len() as u64);
     assert!(grpc.collide(collide(vec![all_pairs()])).await.is_ok());
 }
 
@@ -147,7 +160,7 @@ async fn a_draining_daemon_answers_what_is_under_way_and_takes_nothing_new() {
     let mut queries = QueriesClient::new(grpc.channel.clone());
     let asking = tokio::spawn(async move { queries.distance(question).await });
     eventually("the question is being answered", || service.queries_in_flight() == 1).await;
-    let Grpc { daemon, channel: _kept } = grpc;
+    let Grpc { daemon, channel: _kept, .. } = grpc;
     let stopping = tokio::spawn(daemon.stop());
     let answer = watched("the answer under way", asking).await.unwrap().unwrap();
     assert!(answer.into_inner().answer.unwrap().out_of_time);

@@ -1,10 +1,13 @@
 //! The daemon from outside: every behaviour written once and run through every door, then what only a socket or a
 //! process can show. Nothing here waits without a watchdog, and nothing asserts how fast an answer comes.
 
+mod access;
 mod conformance;
 mod connections;
+mod crowds;
 mod histories;
 mod process;
 mod streams;
 mod support;
 mod watching;
+mod web;

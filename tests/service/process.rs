@@ -1,36 +1,71 @@
 //! `clearance serve` as its user sees it: what it prints, how it ends.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::JoinHandle;
 
-use clearance::transports::grpc::Client;
+use clearance::transports::grpc::{Client, Credentials};
 use clearance::transports::wire::v1;
 use clearance::transports::wire::v1::queries_client::QueriesClient;
 
+use crate::support::certificates::{Authority, Files, trusting};
 use crate::support::watchdog::{eventually, watched};
 
 fn serve() -> Command {
+    serve_at("127.0.0.1:0")
+}
+
+fn serve_at(address: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
-    command.args(["serve", "--grpc-address", "127.0.0.1:0"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.args(["serve", "--grpc-address", address]).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 
 /// A process that does not outlive its test.
-struct Killed(Child);
+struct Killed {
+    child: Child,
+    /// What it writes on stderr, read all the while: a full pipe would stop it.
+    log: Option<JoinHandle<String>>,
+}
 
 impl Drop for Killed {
     fn drop(&mut self) {
-        if self.0.try_wait().is_ok_and(|status| status.is_none()) {
-            self.0.kill().and_then(|()| self.0.wait()).map(drop).unwrap_or_default();
+        if self.child.try_wait().is_ok_and(|status| status.is_none()) {
+            self.child.kill().and_then(|()| self.child.wait()).map(drop).unwrap_or_default();
         }
     }
 }
 
 impl Killed {
+    /// A daemon, and where it says that it listens.
+    async fn listening(command: &mut Command) -> (Self, String) {
+        let mut child = command.spawn().unwrap();
+        let (stdout, mut stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+        let log = std::thread::spawn(move || {
+            let mut text = String::new();
+            stderr.read_to_string(&mut text).unwrap();
+            text
+        });
+        let child = Self { child, log: Some(log) };
+        let line = tokio::task::spawn_blocking(move || BufReader::new(stdout).lines().next().unwrap().unwrap());
+        let line = watched("the first line", line).await.unwrap();
+        let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}")).to_owned();
+        (child, address)
+    }
+
+    /// Told to end: its code, and what it wrote on stderr.
+    async fn stopped(mut self) -> (Option<i32>, String) {
+        let kill = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap();
+        assert!(kill.success());
+        let code = self.ended().await.code();
+        (code, self.log.take().unwrap().join().unwrap())
+    }
+
     async fn ended(&mut self) -> ExitStatus {
         let mut status = None;
         eventually("the end of the process", || {
-            status = self.0.try_wait().unwrap();
+            status = self.child.try_wait().unwrap();
             status.is_some()
         })
         .await;
@@ -47,35 +82,25 @@ fn refused(command: &mut Command) -> (Option<i32>, String) {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn sigterm_ends_a_daemon_that_was_asked_with_success() {
-    let mut child = Killed(serve().spawn().unwrap());
-    let stdout = child.0.stdout.take().unwrap();
-    let line = tokio::task::spawn_blocking(move || BufReader::new(stdout).lines().next().unwrap().unwrap());
-    let line = watched("the first line", line).await.unwrap();
-    let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}"));
-    let client = watched("connecting", Client::connect(address)).await.unwrap();
+    let (child, address) = Killed::listening(&mut serve()).await;
+    let client = watched("connecting", Client::connect(&address)).await.unwrap();
     client.create_scene("cell").await.unwrap();
     assert_eq!(client.server_info().await.unwrap().version, env!("CARGO_PKG_VERSION"));
-    let kill = Command::new("kill").args(["-TERM", &child.0.id().to_string()]).status().unwrap();
-    assert!(kill.success());
-    assert_eq!(child.ended().await.code(), Some(0));
+    assert_eq!(child.stopped().await.0, Some(0));
     let error = watched("a call to nobody", client.server_info()).await.unwrap_err();
     assert!(!error.to_string().is_empty());
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_killed_daemon_does_not_leave_the_readers_of_its_watches_waiting() {
-    let mut child = Killed(serve().spawn().unwrap());
-    let stdout = child.0.stdout.take().unwrap();
-    let line = tokio::task::spawn_blocking(move || BufReader::new(stdout).lines().next().unwrap().unwrap());
-    let line = watched("the first line", line).await.unwrap();
-    let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}"));
-    watched("connecting", Client::connect(address)).await.unwrap().create_scene("cell").await.unwrap();
+    let (mut child, address) = Killed::listening(&mut serve()).await;
+    watched("connecting", Client::connect(&address)).await.unwrap().create_scene("cell").await.unwrap();
     let mut queries = QueriesClient::connect(format!("http://{address}")).await.unwrap();
     let context = Some(v1::Context { scene: "cell".to_owned(), ..v1::Context::default() });
     let request = v1::WatchContactsRequest { context, ..v1::WatchContactsRequest::default() };
     let mut watch = queries.watch_contacts(request).await.unwrap().into_inner();
     assert_eq!(watched("the first step", watch.message()).await.unwrap().unwrap().revision, 0);
-    child.0.kill().unwrap();
+    child.child.kill().unwrap();
     assert!(watched("the end of the watch", watch.message()).await.is_err());
 }
 
@@ -128,4 +153,107 @@ fn a_taken_port_is_told() {
     let (code, text) = refused(command.args(["serve", "--grpc-address", &address]));
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains(&address), "{text}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_open_address_wants_tls_and_a_token_or_a_client_ca() {
+    let (ca, files) = (Authority::new("ours"), Files::new());
+    let server = ca.server();
+    let (certificate, key) = (files.put("c.pem", &server.certificate), files.put("k.pem", &server.key));
+    let authority = files.put("ca.pem", &ca.pem());
+    let token = format!(
+        "[[grpc.tokens]]\nname = \"planner\"\nfile = {:?}\nscopes = [\"read\"]\n",
+        files.put("token", "a-token-of-the-planner")
+    );
+    let tokens = files.put("clearance.toml", &token);
+    let with_tls = || {
+        let mut command = serve_at("0.0.0.0:0");
+        command.arg("--grpc-tls-certificate").arg(&certificate).arg("--grpc-tls-key").arg(&key);
+        command
+    };
+    for mut insufficient in [serve_at("0.0.0.0:0"), with_tls()] {
+        let (code, text) = refused(&mut insufficient);
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains("--insecure"), "{text}");
+    }
+    let (code, text) = refused(serve_at("0.0.0.0:0").arg("--config").arg(&tokens));
+    assert_eq!(code, Some(2), "{text}");
+
+    let (child, _) = Killed::listening(with_tls().arg("--grpc-tls-client-ca").arg(&authority)).await;
+    assert_eq!(child.stopped().await.0, Some(0));
+    let (child, address) = Killed::listening(with_tls().args(["--log", "trace"]).arg("--config").arg(&tokens)).await;
+    let credentials = Credentials { token: Some("a-token-of-the-planner".to_owned()), ..trusting(&ca) };
+    let address = address.replace("0.0.0.0", "https://localhost");
+    let client = watched("connecting", Client::connect_as(&address, &credentials)).await.unwrap();
+    assert!(client.server_info().await.is_ok());
+    let wrong = Credentials { token: Some("another-token-altogether".to_owned()), ..credentials };
+    let client = watched("connecting", Client::connect_as(&address, &wrong)).await.unwrap();
+    assert!(client.server_info().await.is_err());
+    drop(client);
+    let (code, log) = child.stopped().await;
+    assert_eq!(code, Some(0), "{log}");
+    // Log lines name clients, and never a token.
+    let log = log.replace("\u{1b}", "");
+    assert!(log.contains("token:planner") && log.contains("UnknownToken"), "{log}");
+    for secret in ["a-token-of-the-planner", "another-token-altogether"] {
+        assert!(!log.contains(secret), "{log}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn files_of_tls_that_do_not_fit_are_told_by_name_and_an_expired_certificate_in_the_log() {
+    let (ca, files) = (Authority::new("ours"), Files::new());
+    let (server, other, expired) = (ca.server(), ca.server(), ca.expired_server());
+    let [c, k] = [files.put("c.pem", &server.certificate), files.put("k.pem", &server.key)];
+    let [other, empty] = [files.put("other.pem", &other.key), files.put("empty.pem", "")];
+    let missing = other.with_file_name("missing.pem");
+    let with = |certificate: &Path, key: &Path| {
+        let mut command = serve();
+        command.arg("--grpc-tls-certificate").arg(certificate).arg("--grpc-tls-key").arg(key);
+        command
+    };
+    for (certificate, key, named) in [
+        (&c, &other, "other.pem is not the key of"),
+        (&empty, &k, "empty.pem: there is no certificate in it"),
+        (&c, &empty, "empty.pem: "),
+        (&missing, &k, "missing.pem: No such file"),
+    ] {
+        let (code, text) = refused(&mut with(certificate, key));
+        assert_eq!(code, Some(3), "{text}");
+        assert!(text.contains(named), "{text}");
+    }
+    let (code, text) = refused(serve().arg("--grpc-tls-key").arg(&k));
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("grpc.tls: there is a key, but no certificate"), "{text}");
+    let (c, k) = (files.put("expired.pem", &expired.certificate), files.put("its_key.pem", &expired.key));
+    let (child, _) = Killed::listening(&mut with(&c, &k)).await;
+    let (code, log) = child.stopped().await;
+    assert_eq!(code, Some(0), "{log}");
+    assert!(log.contains("ERROR") && log.contains("the certificate has expired"), "{log}");
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_unix_socket_is_left_behind_only_by_a_kill_and_replaced_then() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("clearance.sock");
+    let address = format!("unix:{}", path.display());
+    for killed in [true, false] {
+        let (mut child, listens) = Killed::listening(&mut serve_at(&address)).await;
+        assert_eq!(listens, address);
+        let client = watched("connecting", Client::connect(&address)).await.unwrap();
+        watched("a scene", client.create_scene("cell")).await.unwrap();
+        // A second one is told that the first is there, and does it no harm.
+        let (code, text) = refused(&mut serve_at(&address));
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("another process listens there"), "{text}");
+        assert!(client.server_info().await.is_ok());
+        if killed {
+            child.child.kill().unwrap();
+            child.ended().await;
+            assert!(path.exists());
+        } else {
+            assert_eq!(child.stopped().await.0, Some(0));
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
+    }
 }

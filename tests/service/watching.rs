@@ -128,7 +128,7 @@ async fn the_transports_deadline_ends_a_watch() {
 async fn a_draining_daemon_ends_its_watches_and_is_clean() {
     let grpc = Grpc::open(Limits::default()).await;
     row(&grpc, 2).await;
-    let Grpc { daemon, channel } = grpc;
+    let Grpc { daemon, channel, .. } = grpc;
     let mut stream = QueriesClient::new(channel.clone()).watch_contacts(watch()).await.unwrap().into_inner();
     stream.message().await.unwrap().unwrap();
     let service = Arc::clone(&daemon.service);

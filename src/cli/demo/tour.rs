@@ -54,7 +54,7 @@ pub fn run(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
 }
 
 async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
-    let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), insecure: None };
+    let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
     let config = Settings { grpc, ..Settings::default() }.resolve().map_err(Failed::failure)?;
     let daemon = Daemon::build(&config).await.map_err(Failed::failure)?;
     let door = daemon.doors().into_iter().next().ok_or_else(|| Failed::failure("the daemon has no door"))?;

@@ -3,9 +3,11 @@
 
 use std::time::Duration;
 
+use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status};
 
+use super::credentials::{Bearer, Credentials};
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckMotions, CheckStates, Clearance, Motions, PairQuery};
 use crate::scene::{Applied, BodyId, BodyRef, Epoch, NewBody, Revision};
@@ -39,6 +41,9 @@ pub enum ClientError {
         /// What the connection says.
         source: tonic::transport::Error,
     },
+    /// The token cannot be sent.
+    #[error("the token is not printable ASCII")]
+    BadToken,
     /// It refused the request.
     #[error("{message} ({code:?})")]
     Refused {
@@ -120,31 +125,50 @@ pub struct RemoteServer {
     pub threads: usize,
 }
 
+/// A connection on which every call brings the token.
+type Way = InterceptedService<Channel, Bearer>;
+
 /// A connection to a daemon. Cloning shares it.
 #[derive(Clone, Debug)]
 pub struct Client {
-    scenes: ScenesClient<Channel>,
-    assets: AssetsClient<Channel>,
-    robots: RobotsClient<Channel>,
-    queries: QueriesClient<Channel>,
-    server: ServerClient<Channel>,
+    scenes: ScenesClient<Way>,
+    assets: AssetsClient<Way>,
+    robots: RobotsClient<Way>,
+    queries: QueriesClient<Way>,
+    server: ServerClient<Way>,
 }
 
 impl Client {
-    /// Connects to `http://HOST:PORT`, or to `HOST:PORT`.
+    /// Connects to `http://HOST:PORT`, `https://HOST:PORT`, `HOST:PORT` or `unix:PATH`, without showing anything.
     ///
     /// # Errors
     /// [`ClientError::Unreachable`].
     pub async fn connect(address: &str) -> Result<Self, ClientError> {
+        Self::connect_as(address, &Credentials::default()).await
+    }
+
+    /// Connects with a token, a certificate, or whatever else the daemon wants to see. A bare `HOST:PORT` means TLS where
+    /// `credentials` have anything of TLS.
+    ///
+    /// # Errors
+    /// [`ClientError::Unreachable`], [`ClientError::BadToken`].
+    pub async fn connect_as(address: &str, credentials: &Credentials) -> Result<Self, ClientError> {
         let unreachable = |source| ClientError::Unreachable { address: address.to_owned(), source };
-        let url = if address.contains("://") { address.to_owned() } else { format!("http://{address}") };
+        let scheme = if credentials.has_tls() { "https" } else { "http" };
+        let has_scheme = address.contains("://") || address.starts_with("unix:");
+        let url = if has_scheme { address.to_owned() } else { format!("{scheme}://{address}") };
+        let encrypted = url.starts_with("https://");
         let endpoint = Endpoint::from_shared(url).map_err(unreachable)?;
-        let endpoint = endpoint
+        let mut endpoint = endpoint
             .connect_timeout(CONNECT_TIMEOUT)
             .tcp_nodelay(true)
             .initial_stream_window_size(WINDOW)
             .initial_connection_window_size(WINDOW);
-        let channel = endpoint.connect().await.map_err(unreachable)?;
+        if encrypted {
+            endpoint = endpoint.tls_config(credentials.tls()).map_err(unreachable)?;
+        }
+        let bearer = credentials.bearer().ok_or(ClientError::BadToken)?;
+        let channel = InterceptedService::new(endpoint.connect().await.map_err(unreachable)?, bearer);
         Ok(Self {
             scenes: ScenesClient::new(channel.clone()),
             assets: AssetsClient::new(channel.clone()),

@@ -5,14 +5,25 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::net::{TcpListener, lookup_host};
+use tokio::sync::watch;
+use tokio_rustls::TlsAcceptor;
+use tokio_stream::wrappers::ReceiverStream;
 use tonic::server::NamedService;
 use tonic::transport::Server;
-use tonic::transport::server::TcpIncoming;
 use tonic_health::ServingStatus;
 use tonic_reflection::server::Builder;
+use tonic_web::GrpcWebLayer;
+use tower::util::option_layer;
+use tower_http::cors::CorsLayer;
 
+use super::address::{Address, Listener, listen, listen_at, resolve};
+use super::clients::Clients;
+use super::gate::GateLayer;
 use super::handlers::Handlers;
+use super::incoming::Reception;
+use super::tls::{TlsError, TlsFiles};
+use super::tokens::{KnownToken, TokenError, TokenSource, Tokens};
+use super::web::{BadOrigin, cors};
 use crate::service::{Door, Service};
 use crate::transports::wire::v1;
 use crate::transports::wire::v1::assets_server::AssetsServer;
@@ -39,19 +50,25 @@ const SERVICES: [&str; 6] = [
     ServerServer::<Handlers>::NAME,
 ];
 
-/// Where the door is to be.
+/// Where the door is to be, and for whom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// HOST:PORT; port 0 means any free one.
+    /// HOST:PORT, where port 0 means any free one; or `unix:PATH`.
     pub address: String,
-    /// Listen beyond loopback although there is neither TLS nor a token.
+    /// Listen beyond loopback although it is not both encrypted and closed to strangers.
     pub insecure: bool,
+    /// The files of TLS; none: bytes go as they are.
+    pub tls: Option<TlsFiles>,
+    /// Who may do what; empty: everybody who can connect may do everything.
+    pub tokens: Vec<TokenSource>,
+    /// Origins of web pages that may ask by gRPC-Web; empty: the door does not speak it.
+    pub allowed_origins: Vec<String>,
 }
 
 /// Why the door cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum BindError {
-    /// Not a HOST:PORT that means an address of this machine.
+    /// Nothing that means an address of this machine, or one that is taken.
     #[error("grpc.address {address:?}: {source}")]
     Address {
         /// As configured.
@@ -59,12 +76,29 @@ pub enum BindError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// Anybody in the network could ask and change everything.
-    #[error("grpc.address {address} is not a loopback address; without TLS it is only used with --insecure")]
+    /// Anybody in the network could ask and change everything, or read what others ask.
+    #[error(
+        "grpc.address {address} is not a loopback address; it is only used with TLS and a token or a client CA, or with --insecure"
+    )]
     NotLoopback {
         /// The address.
         address: SocketAddr,
     },
+    /// Nobody else sees what goes through a Unix socket.
+    #[error("grpc.address {address:?} is a Unix socket, where grpc.tls has no meaning")]
+    TlsOnUnix {
+        /// As configured.
+        address: String,
+    },
+    /// A file of TLS.
+    #[error("grpc.tls: {0}")]
+    Tls(#[from] TlsError),
+    /// A token.
+    #[error(transparent)]
+    Token(#[from] TokenError),
+    /// An origin.
+    #[error(transparent)]
+    Origin(#[from] BadOrigin),
 }
 
 impl Config {
@@ -73,37 +107,55 @@ impl Config {
     /// # Errors
     /// [`BindError`].
     pub async fn bind(&self) -> Result<Listening, BindError> {
+        let cors = cors(&self.allowed_origins)?;
+        let tokens = self.tokens.iter().map(TokenSource::read).collect::<Result<Vec<_>, _>>()?;
+        let tls = self.tls.as_ref().map(|files| files.acceptor(cors.is_some())).transpose()?;
         let failed = |source| BindError::Address { address: self.address.clone(), source };
-        let addresses: Vec<SocketAddr> = lookup_host(&self.address).await.map_err(failed)?.collect();
-        if let Some(&address) = addresses.iter().find(|address| !address.ip().is_loopback())
-            && !self.insecure
-        {
-            return Err(BindError::NotLoopback { address });
-        }
-        let listener = TcpListener::bind(addresses.as_slice()).await.map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
-        Ok(Listening { listener, address })
+        let Ok(address) = self.address.parse::<Address>();
+        let listener = match address {
+            Address::Unix(_) if tls.is_some() => {
+                return Err(BindError::TlsOnUnix { address: self.address.clone() });
+            }
+            Address::Unix(path) => listen_at(&path).map_err(failed)?,
+            Address::Tcp(host_and_port) => {
+                let addresses = resolve(&host_and_port).await.map_err(failed)?;
+                if let Some(&address) = addresses.iter().find(|address| !address.ip().is_loopback())
+                    && !self.insecure
+                    && !self.is_closed_to_strangers()
+                {
+                    return Err(BindError::NotLoopback { address });
+                }
+                listen(&addresses).await.map_err(failed)?
+            }
+        };
+        Ok(Listening { listener, tls, tokens, cors })
+    }
+
+    /// Whether all that goes through the door is encrypted, and nobody comes in whom the daemon does not know.
+    fn is_closed_to_strangers(&self) -> bool {
+        self.tls.as_ref().is_some_and(|tls| tls.client_ca.is_some() || !self.tokens.is_empty())
     }
 }
 
 /// An open door that nobody serves yet.
-#[derive(Debug)]
 pub struct Listening {
-    listener: TcpListener,
-    address: SocketAddr,
+    listener: Listener,
+    tls: Option<TlsAcceptor>,
+    tokens: Vec<KnownToken>,
+    cors: Option<CorsLayer>,
+}
+
+impl std::fmt::Debug for Listening {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Listening").field("listener", &self.listener).finish_non_exhaustive()
+    }
 }
 
 impl Listening {
-    /// Where it is.
-    #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-
     /// The door as the service lists it.
     #[must_use]
     pub fn door(&self) -> Door {
-        Door { kind: "grpc", address: self.address.to_string() }
+        Door { kind: "grpc", address: self.listener.to_string() }
     }
 
     /// Serves until `drain` comes, then answers what is under way and closes.
@@ -129,6 +181,12 @@ impl Listening {
         let reflection_v1alpha = reflection(Builder::configure()).build_v1alpha().expect(descriptors);
 
         let bytes = service.limits().max_message_bytes;
+        let clients = Arc::new(Clients::new(service.limits()));
+        let gate = GateLayer::new(Tokens::new(&self.tokens, &clients));
+        let (draining, told_to_drain) = watch::channel(false);
+        let (reception, connections) =
+            Reception::new(self.listener, self.tls, clients, service.limits(), told_to_drain);
+        tokio::spawn(reception.run());
         let handlers = Handlers { service };
         let scenes = ScenesServer::new(handlers.clone());
         let assets = AssetsServer::new(handlers.clone());
@@ -141,6 +199,10 @@ impl Listening {
             .max_concurrent_streams(CALLS_PER_CONNECTION)
             .http2_keepalive_interval(Some(KEEPALIVE))
             .http2_keepalive_timeout(Some(KEEPALIVE_TIMEOUT))
+            .accept_http1(self.cors.is_some())
+            .layer(option_layer(self.cors.clone()))
+            .layer(option_layer(self.cors.map(|_| GrpcWebLayer::new())))
+            .layer(gate)
             .add_service(health_server)
             .add_service(reflection_v1)
             .add_service(reflection_v1alpha)
@@ -149,8 +211,9 @@ impl Listening {
             .add_service(robots.max_decoding_message_size(bytes).max_encoding_message_size(bytes))
             .add_service(queries.max_decoding_message_size(bytes).max_encoding_message_size(bytes))
             .add_service(server.max_decoding_message_size(bytes).max_encoding_message_size(bytes))
-            .serve_with_incoming_shutdown(TcpIncoming::from(self.listener).with_nodelay(Some(true)), async {
+            .serve_with_incoming_shutdown(ReceiverStream::new(connections), async {
                 drain.await;
+                draining.send_replace(true);
                 for name in SERVICES {
                     health.set_service_status(name, ServingStatus::NotServing).await;
                 }

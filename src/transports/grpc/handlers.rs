@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use tonic::{Request, Response, Status};
 
+use super::gate::Caller;
 use super::grpc_timeout::grpc_timeout;
+use super::items::Items;
 use super::status::status_of;
 use crate::service::{Service, ServiceError};
 
@@ -17,13 +19,20 @@ pub(super) struct Handlers {
 
 impl Handlers {
     /// A call that ends when its caller stops listening.
-    pub async fn answer<M, T>(
+    pub async fn answer<M: Items, T: Items>(
         &self,
         request: Request<M>,
         call: impl AsyncFnOnce(&Arc<Service>, M, Option<Duration>) -> Result<T, ServiceError>,
     ) -> Result<Response<T>, Status> {
         let timeout = grpc_timeout(request.metadata()).map_err(|error| status_of(&error))?;
-        respond(call(&self.service, request.into_inner(), timeout).await)
+        let caller = request.extensions().get::<Caller>().cloned();
+        let message = request.into_inner();
+        let edits = message.items();
+        let outcome = call(&self.service, message, timeout).await;
+        if let (Some(Caller(client)), Ok(answer)) = (caller, &outcome) {
+            client.take_items(edits + answer.items());
+        }
+        respond(outcome)
     }
 }
 

@@ -2,19 +2,40 @@
 //!
 //! A handler hands its message to `transports::requests`. Caps are the service's; sizes of messages are set in `door`; the caller's deadline is ours to keep (`grpc_timeout`), because tonic's own answers CANCELLED.
 
+mod access;
+mod address;
 mod assets;
+mod bucket;
+mod certificate;
 mod client;
+mod clients;
+mod connection;
 mod contacts;
+mod credentials;
 mod door;
+mod gate;
+mod gate_body;
 mod grpc_timeout;
 mod handlers;
+mod incoming;
+mod items;
 mod queries;
+mod refusal;
 mod robots;
 mod scenes;
+mod seldom;
 mod server;
 mod status;
 mod streams;
+mod tls;
+mod tokens;
+mod web;
 
+pub use access::Scope;
 pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
+pub use credentials::{Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use status::{query_error, status_of};
+pub use tls::{TlsError, TlsFiles};
+pub use tokens::{Secret, TokenError, TokenSource};
+pub use web::BadOrigin;

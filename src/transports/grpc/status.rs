@@ -12,6 +12,16 @@ use crate::transports::wire::v1::ErrorReason;
 #[must_use]
 pub fn status_of(error: &ServiceError) -> Status {
     let (code, reason) = code_of(error);
+    with_reason(code, reason, &error.to_string(), details_of(error))
+}
+
+/// A status with what programs read of it.
+pub(super) fn with_reason(
+    code: Code,
+    reason: ErrorReason,
+    message: &str,
+    details: Vec<(&'static str, String)>,
+) -> Status {
     let name = reason.as_str_name();
     let mut metadata = MetadataMap::new();
     let mut put = |key: &'static str, value: String| {
@@ -21,10 +31,10 @@ pub fn status_of(error: &ServiceError) -> Status {
         }
     };
     put("clearance-reason", name.strip_prefix("ERROR_REASON_").unwrap_or(name).to_owned());
-    for (key, value) in details_of(error) {
+    for (key, value) in details {
         put(key, value);
     }
-    Status::with_metadata(code, error.to_string(), metadata)
+    Status::with_metadata(code, message, metadata)
 }
 
 /// The same as a message, for errors that do not end a stream.

@@ -1,4 +1,4 @@
-//! Streams of messages: each is made when the connection has room for it, and not before.
+//! Streams of messages: each is made when the connection has room for it and the client may have more, and not before.
 
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -6,8 +6,10 @@ use std::task::{Context, Poll, ready};
 use tokio_stream::Stream;
 use tonic::{Request, Status, Streaming};
 
+use super::gate::Caller;
 use super::grpc_timeout::grpc_timeout;
 use super::handlers::Handlers;
+use super::items::Items;
 use super::status::{query_error, status_of};
 use crate::service::ServiceError;
 use crate::transports::requests::{self, PoseMessages, QueryMessages, SceneMessages};
@@ -16,7 +18,7 @@ use crate::transports::wire::v1;
 /// What makes the messages of a stream, one after the other.
 pub trait Messages: Send + Sized + 'static {
     /// A message.
-    type Message: Send + 'static;
+    type Message: Items + Send + 'static;
 
     /// The next one; none at the end.
     fn next_message(&mut self) -> impl Future<Output = Result<Option<Self::Message>, ServiceError>> + Send;
@@ -52,16 +54,21 @@ type Step<M> = Pin<Box<dyn Future<Output = (M, Result<Option<<M as Messages>::Me
 pub struct MessageStream<M: Messages> {
     /// Makes the next message once it is polled; none after the end.
     step: Option<Step<M>>,
+    /// Whose share of items the messages are taken off.
+    caller: Option<Caller>,
 }
 
 impl<M: Messages> MessageStream<M> {
-    pub(super) fn new(messages: M) -> Self {
-        Self { step: Some(step(messages)) }
+    fn new(messages: M, caller: Option<Caller>) -> Self {
+        Self { step: Some(step(messages, caller.clone())), caller }
     }
 }
 
-fn step<M: Messages>(mut messages: M) -> Step<M> {
+fn step<M: Messages>(mut messages: M, caller: Option<Caller>) -> Step<M> {
     Box::pin(async move {
+        while let Some(wait) = caller.as_ref().and_then(|Caller(client)| client.items_wait()) {
+            tokio::time::sleep(wait).await;
+        }
         let message = messages.next_message().await;
         (messages, message)
     })
@@ -76,7 +83,10 @@ impl<M: Messages> Stream for MessageStream<M> {
         self.step = None;
         match message {
             Ok(Some(message)) => {
-                self.step = Some(step(messages));
+                if let Some(Caller(client)) = &self.caller {
+                    client.take_items(message.items());
+                }
+                self.step = Some(step(messages, self.caller.clone()));
                 Poll::Ready(Some(Ok(message)))
             }
             Ok(None) => Poll::Ready(None),
@@ -91,7 +101,8 @@ impl Handlers {
         request: &Request<v1::WatchRequest>,
     ) -> Result<MessageStream<SceneMessages>, ServiceError> {
         let timeout = grpc_timeout(request.metadata())?;
-        Ok(MessageStream::new(requests::watch(&self.service, request.get_ref(), timeout)?))
+        let steps = requests::watch(&self.service, request.get_ref(), timeout)?;
+        Ok(MessageStream::new(steps, caller(request)))
     }
 
     pub(super) fn poses(
@@ -99,7 +110,8 @@ impl Handlers {
         request: Request<Streaming<v1::PoseStreamRequest>>,
     ) -> Result<MessageStream<PoseMessages<Streaming<v1::PoseStreamRequest>>>, ServiceError> {
         let timeout = grpc_timeout(request.metadata())?;
-        Ok(MessageStream::new(requests::pose_stream(&self.service, request.into_inner(), timeout)))
+        let caller = caller(&request);
+        Ok(MessageStream::new(requests::pose_stream(&self.service, request.into_inner(), timeout), caller))
     }
 
     pub(super) fn questions(
@@ -107,7 +119,12 @@ impl Handlers {
         request: Request<Streaming<v1::QueryStreamRequest>>,
     ) -> Result<MessageStream<QueryMessages<Streaming<v1::QueryStreamRequest>>>, ServiceError> {
         let timeout = grpc_timeout(request.metadata())?;
+        let caller = caller(&request);
         let questions = requests::query_stream(&self.service, request.into_inner(), timeout, query_error)?;
-        Ok(MessageStream::new(questions))
+        Ok(MessageStream::new(questions, caller))
     }
+}
+
+fn caller<T>(request: &Request<T>) -> Option<Caller> {
+    request.extensions().get::<Caller>().cloned()
 }

@@ -37,6 +37,14 @@ macro_rules! through_every_door {
                 watched(stringify!($behaviour), super::$behaviour(&door)).await;
             })*
         }
+        mod grpc_unix {
+            $(#[tokio::test(flavor = "multi_thread")]
+            async fn $behaviour() {
+                use crate::support::{door::{Door, GrpcUnix}, watchdog::watched};
+                let door = GrpcUnix::open(super::limits()).await;
+                watched(stringify!($behaviour), super::$behaviour(&door)).await;
+            })*
+        }
     };
 }
 

@@ -19,15 +19,16 @@ pub struct RunningDaemon {
 
 pub fn config(limits: Limits) -> Config {
     let address = Some("127.0.0.1:0".to_owned());
-    let settings = Settings { threads: Some(2), grpc: GrpcSettings { address, insecure: None }, ..Settings::default() };
+    let settings =
+        Settings { threads: Some(2), grpc: GrpcSettings { address, ..GrpcSettings::default() }, ..Settings::default() };
     let mut config = settings.resolve().unwrap();
     config.service.limits = limits;
     config
 }
 
 impl RunningDaemon {
-    pub async fn start(limits: Limits) -> Self {
-        let daemon = Daemon::build(&config(limits)).await.unwrap();
+    pub async fn start(config: &Config) -> Self {
+        let daemon = Daemon::build(config).await.unwrap();
         let service = Arc::clone(daemon.service());
         let address = daemon.doors()[0].address.clone();
         let (stop, told_to_stop) = oneshot::channel();

@@ -14,13 +14,14 @@ use clearance::transports::wire::v1::queries_client::QueriesClient;
 use clearance::transports::wire::v1::robots_client::RobotsClient;
 use clearance::transports::wire::v1::scenes_client::ScenesClient;
 use clearance::transports::wire::{to_proto, v1};
+use tempfile::TempDir;
 use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tokio_stream::{Stream, StreamExt};
-use tonic::transport::Channel;
+use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status, Streaming};
 
-use super::daemon::RunningDaemon;
+use super::daemon::{RunningDaemon, config};
 
 /// Why a request was refused, as every door tells it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -259,18 +260,60 @@ impl Contacts for InProcessContacts {
     }
 }
 
-/// HTTP/2 over loopback.
-pub struct Grpc {
+/// gRPC, over one thing or another.
+pub struct Http2<W> {
     pub daemon: RunningDaemon,
     pub channel: Channel,
+    /// What has to stay as long as the daemon.
+    _way: W,
 }
 
-impl Door for Grpc {
+/// HTTP/2 over loopback.
+pub type Grpc = Http2<Loopback>;
+/// HTTP/2 over a Unix socket.
+pub type GrpcUnix = Http2<UnixSocket>;
+
+/// What HTTP/2 goes over.
+pub trait Way: Sized {
+    fn prepare() -> Self;
+    /// Where the daemon is to listen.
+    fn address(&self) -> String;
+}
+
+pub struct Loopback;
+
+impl Way for Loopback {
+    fn prepare() -> Self {
+        Self
+    }
+
+    fn address(&self) -> String {
+        "127.0.0.1:0".to_owned()
+    }
+}
+
+pub struct UnixSocket(TempDir);
+
+impl Way for UnixSocket {
+    fn prepare() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn address(&self) -> String {
+        format!("unix:{}", self.0.path().join("clearance.sock").display())
+    }
+}
+
+impl<W: Way> Door for Http2<W> {
     async fn open(limits: Limits) -> Self {
-        let daemon = RunningDaemon::start(limits).await;
-        let address = format!("http://{}", daemon.address);
-        let channel = Channel::from_shared(address).unwrap().connect().await.unwrap();
-        Self { daemon, channel }
+        let way = W::prepare();
+        let mut config = config(limits);
+        config.grpc.address = way.address();
+        let daemon = RunningDaemon::start(&config).await;
+        let unix = daemon.address.starts_with("unix:");
+        let address = if unix { daemon.address.clone() } else { format!("http://{}", daemon.address) };
+        let channel = Endpoint::from_shared(address).unwrap().connect().await.unwrap();
+        Self { daemon, channel, _way: way }
     }
 
     async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary> {

@@ -92,6 +92,20 @@ pub fn collide(items: Vec<v1::Subject>) -> v1::CollideRequest {
     v1::CollideRequest { context: Some(context()), items, mode: 0 }
 }
 
+/// Balls that all overlap: 1770 pairs.
+pub fn heap() -> v1::ApplyRequest {
+    apply((0..60).map(|i| add(&format!("ball{i}"), sphere(1.0), at(0.0, 0.0, 0.0))).collect())
+}
+
+/// Lists all pairs of a heap again and again: some 50 kB an item.
+pub fn heap_listed(items: usize) -> v1::CollideRequest {
+    let wants = Some(v1::Wants { pairs: true, ..v1::Wants::default() });
+    v1::CollideRequest {
+        context: Some(v1::Context { wants, max_pairs: Some(10_000), ..context() }),
+        ..collide(vec![all_pairs(); items])
+    }
+}
+
 pub fn distance(items: Vec<v1::Subject>) -> v1::DistanceRequest {
     v1::DistanceRequest { context: Some(context()), items, mode: 0 }
 }

@@ -15,6 +15,7 @@ from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, ra
 from .contacts import ContactWatch
 from .edits import BodyName, body_ref
 from . import motions as motion_messages
+from .channels import open_channel
 from .errors import refused, translated
 from .motions import MotionsAnswer
 from .overlays import WhatIf
@@ -55,10 +56,24 @@ def changed_since(revision: int) -> query.Subject:
 class Client:
     """A connection. Use it in a `with` statement, or close it."""
 
-    def __init__(self, address: str = DEFAULT_ADDRESS, *, timeout: Optional[float] = 60.0):
-        """`address` is `HOST:PORT`; `timeout`, in seconds, counts for every call that does not bring its own."""
-        unlimited = [("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1)]
-        self._channel = grpc.insecure_channel(address.removeprefix("http://"), options=unlimited)
+    def __init__(
+        self,
+        address: str = DEFAULT_ADDRESS,
+        *,
+        timeout: Optional[float] = 60.0,
+        token: Optional[str] = None,
+        ca: Optional[PathLike] = None,
+        certificate: Optional[PathLike] = None,
+        key: Optional[PathLike] = None,
+    ):
+        """`address` is `HOST:PORT`, `http://HOST:PORT`, `https://HOST:PORT` or `unix:PATH`.
+
+        `timeout`, in seconds, counts for every call that does not bring its own. `token` goes with every call.
+        `ca` is a file (PEM) of certificates of which one must have signed the daemon's; without it those that gRPC
+        brings along are trusted. `certificate` and `key` are files (PEM) of the client's own. A bare `HOST:PORT` means
+        TLS if any of these three is given.
+        """
+        self._channel = open_channel(address, token=token, ca=ca, certificate=certificate, key=key)
         self._timeout = timeout
         self._scenes = ScenesStub(self._channel)
         self._assets = AssetsStub(self._channel)

@@ -31,6 +31,10 @@ class ClearanceError(Exception):
         self.limit: Optional[str] = details.get("clearance-limit")
         self.asked: Optional[int] = _number(details.get("clearance-asked"))
         self.allowed: Optional[int] = _number(details.get("clearance-allowed"))
+        #: When the limit lets this client in again, seconds.
+        self.retry_after: Optional[float] = _seconds(details.get("clearance-retry-after-ms"))
+        #: The scope that the token lacks, `read` or `write`.
+        self.scope: Optional[str] = details.get("clearance-scope")
         #: The scene as it is now, where it is not as was expected.
         self.epoch: Optional[int] = _number(details.get("clearance-epoch"))
         self.revision: Optional[int] = _number(details.get("clearance-revision"))
@@ -50,11 +54,15 @@ class Conflict(ClearanceError):
 
 
 class RevisionGone(ClearanceError):
-    """The revision asked for is not kept any more, or a message was too large for the connection."""
+    """The revision asked for is not kept any more; `oldest_revision` is."""
 
 
 class LimitExceeded(ClearanceError):
-    """A cap of the daemon; `limit`, `asked` and `allowed` say which."""
+    """A cap of the daemon; `limit`, `asked` and `allowed` say which, `retry_after` when to ask again if time helps."""
+
+
+class NotAllowed(ClearanceError):
+    """The daemon wants a token, does not know this one, or it lacks `scope`; `reason` says which."""
 
 
 class DeadlineExceeded(ClearanceError):
@@ -74,6 +82,8 @@ _KINDS: dict[grpc.StatusCode, type[ClearanceError]] = {
     grpc.StatusCode.OUT_OF_RANGE: RevisionGone,
     grpc.StatusCode.RESOURCE_EXHAUSTED: LimitExceeded,
     grpc.StatusCode.DEADLINE_EXCEEDED: DeadlineExceeded,
+    grpc.StatusCode.UNAUTHENTICATED: NotAllowed,
+    grpc.StatusCode.PERMISSION_DENIED: NotAllowed,
     grpc.StatusCode.UNAVAILABLE: Unavailable,
 }
 
@@ -109,3 +119,8 @@ def _item(field: Optional[str]) -> Optional[int]:
 
 def _number(text: Optional[str]) -> Optional[int]:
     return int(text) if text is not None and text.isdecimal() else None
+
+
+def _seconds(milliseconds: Optional[str]) -> Optional[float]:
+    number = _number(milliseconds)
+    return None if number is None else number / 1000.0

@@ -33,6 +33,9 @@ class ErrorReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     ERROR_REASON_SHUTTING_DOWN: _ClassVar[ErrorReason]
     ERROR_REASON_INTERNAL: _ClassVar[ErrorReason]
     ERROR_REASON_KEY_REUSED: _ClassVar[ErrorReason]
+    ERROR_REASON_NO_TOKEN: _ClassVar[ErrorReason]
+    ERROR_REASON_UNKNOWN_TOKEN: _ClassVar[ErrorReason]
+    ERROR_REASON_MISSING_SCOPE: _ClassVar[ErrorReason]
 ERROR_REASON_UNSPECIFIED: ErrorReason
 ERROR_REASON_INVALID_FIELD: ErrorReason
 ERROR_REASON_NOT_FOUND: ErrorReason
@@ -48,6 +51,9 @@ ERROR_REASON_HASH_MISMATCH: ErrorReason
 ERROR_REASON_SHUTTING_DOWN: ErrorReason
 ERROR_REASON_INTERNAL: ErrorReason
 ERROR_REASON_KEY_REUSED: ErrorReason
+ERROR_REASON_NO_TOKEN: ErrorReason
+ERROR_REASON_UNKNOWN_TOKEN: ErrorReason
+ERROR_REASON_MISSING_SCOPE: ErrorReason
 
 class CreateSceneRequest(_message.Message):
     __slots__ = ("name", "broad_phase")

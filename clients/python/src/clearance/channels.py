@@ -1,0 +1,98 @@
+"""How a client reaches a daemon: the connection, and what it shows."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+import grpc
+
+from .robots import PathLike
+
+_UNLIMITED = [("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1)]
+
+#: gRPC would name the path of a socket as host, with characters that HTTP/2 servers in Rust refuse.
+_UNIX = [*_UNLIMITED, ("grpc.default_authority", "localhost")]
+
+
+def open_channel(
+    address: str,
+    *,
+    token: Optional[str],
+    ca: Optional[PathLike],
+    certificate: Optional[PathLike],
+    key: Optional[PathLike],
+) -> grpc.Channel:
+    """A channel to `address` on which every call brings the token."""
+    if (certificate is None) != (key is None):
+        raise ValueError("certificate and key go together")
+    has_tls = ca is not None or certificate is not None
+    target, encrypted = _target(address, has_tls)
+    if has_tls and not encrypted:
+        raise ValueError(f"{address} has no TLS: ca, certificate and key have no meaning there")
+    if encrypted:
+        credentials = grpc.ssl_channel_credentials(
+            root_certificates=None if ca is None else Path(ca).read_bytes(),
+            private_key=None if key is None else Path(key).read_bytes(),
+            certificate_chain=None if certificate is None else Path(certificate).read_bytes(),
+        )
+        channel = grpc.secure_channel(target, credentials, options=_UNLIMITED)
+    else:
+        channel = grpc.insecure_channel(target, options=_UNIX if target.startswith("unix:") else _UNLIMITED)
+    if token is None:
+        return channel
+    if not (token.isascii() and token.isprintable()):
+        # The text of a token has no place in an error.
+        raise ValueError("the token is not printable ASCII")
+    return grpc.intercept_channel(channel, _Bearer(token))
+
+
+def _target(address: str, has_tls: bool) -> tuple[str, bool]:
+    """What gRPC calls the address, and whether it is one with TLS."""
+    if address.startswith("unix:"):
+        return address, False
+    if address.startswith("https://"):
+        return address.removeprefix("https://"), True
+    if address.startswith("http://"):
+        return address.removeprefix("http://"), False
+    return address, has_tls
+
+
+class _Details(
+    namedtuple("_Details", ("method", "timeout", "metadata", "credentials", "wait_for_ready", "compression")),
+    grpc.ClientCallDetails,
+):
+    """A call as an interceptor hands it on."""
+
+
+class _Bearer(
+    grpc.UnaryUnaryClientInterceptor,
+    grpc.UnaryStreamClientInterceptor,
+    grpc.StreamUnaryClientInterceptor,
+    grpc.StreamStreamClientInterceptor,
+):
+    """Puts the token on every call. gRPC's own call credentials refuse to without TLS, which a daemon on loopback does not
+    need."""
+
+    def __init__(self, token: str):
+        self._entry = ("authorization", f"Bearer {token}")
+
+    def _call(self, proceed: Callable[[grpc.ClientCallDetails, Any], Any], details: grpc.ClientCallDetails, sent: Any) -> Any:
+        metadata = [*(details.metadata or ()), self._entry]
+        return proceed(
+            _Details(
+                details.method,
+                details.timeout,
+                metadata,
+                details.credentials,
+                details.wait_for_ready,
+                details.compression,
+            ),
+            sent,
+        )
+
+    intercept_unary_unary = _call
+    intercept_unary_stream = _call
+    intercept_stream_unary = _call
+    intercept_stream_stream = _call
