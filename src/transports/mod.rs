@@ -3,4 +3,6 @@
 #[cfg(feature = "grpc")]
 pub mod grpc;
 #[cfg(feature = "grpc")]
+pub mod requests;
+#[cfg(feature = "grpc")]
 pub mod wire;

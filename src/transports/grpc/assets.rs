@@ -4,13 +4,13 @@ use std::time::Duration;
 
 use tonic::{Request, Response, Status, Streaming};
 
-use super::grpc_timeout::grpc_timeout;
 use super::handlers::{Handlers, respond};
 use super::status::status_of;
-use crate::service::{ContentHash, Patience, ServiceError, Stored};
+use crate::service::{ServiceError, Stored};
+use crate::transports::requests;
+use crate::transports::wire::v1;
 use crate::transports::wire::v1::assets_server::Assets;
 use crate::transports::wire::v1::put_asset_request::Part;
-use crate::transports::wire::{from_proto, to_proto, v1};
 
 #[tonic::async_trait]
 impl Assets for Handlers {
@@ -18,25 +18,15 @@ impl Assets for Handlers {
         &self,
         request: Request<v1::HasAssetsRequest>,
     ) -> Result<Response<v1::HasAssetsResponse>, Status> {
-        let hashes = request.into_inner().sha256;
-        let present = |(index, hash): (usize, &String)| {
-            let hash: ContentHash =
-                hash.parse().map_err(|error| ServiceError::invalid(format!("sha256[{index}]"), error))?;
-            Ok(self.service.library().assets().has(hash))
-        };
-        let present = hashes.iter().enumerate().map(present).collect::<Result<_, ServiceError>>();
-        respond(present.map(|present| v1::HasAssetsResponse { present }))
+        respond(requests::has_assets(&self.service, request.get_ref()))
     }
 
     async fn describe_mesh(
         &self,
         request: Request<v1::DescribeMeshRequest>,
     ) -> Result<Response<v1::DescribeMeshResponse>, Status> {
-        let timeout = grpc_timeout(request.metadata()).map_err(|error| status_of(&error))?;
-        let asked = from_proto::mesh_card_request(&request.into_inner()).map_err(|error| status_of(&error))?;
-        let patience = Patience { timeout, ..Patience::default() };
-        let card = self.service.mesh_card(asked, patience, from_proto::unusable_mesh).await;
-        respond(card.map(|card| v1::DescribeMeshResponse { card: Some(to_proto::mesh_card(&card)) }))
+        let describe = async |service: &_, message, timeout| requests::describe_mesh(service, &message, timeout).await;
+        self.answer(request, describe).await
     }
 
     async fn put_asset(
@@ -47,11 +37,7 @@ impl Assets for Handlers {
         // A caller that falls silent gives its place to others in the end.
         let stored = tokio::time::timeout(longest, self.receive(request.into_inner())).await;
         let stored = stored.unwrap_or_else(|_| Err(status_of(&ServiceError::DeadlineExceeded)))?;
-        respond(Ok(v1::PutAssetResponse {
-            sha256: stored.hash.to_string(),
-            bytes: stored.bytes as u64,
-            already_present: stored.already_present,
-        }))
+        respond(Ok(requests::put_asset_response(&stored)))
     }
 }
 

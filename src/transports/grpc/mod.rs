@@ -1,8 +1,6 @@
 //! The gRPC door: services of `proto/clearance/v1`, health and reflection over HTTP/2.
 //!
-//! A handler decodes, calls the service and encodes; decoding and encoding of questions happen on the threads that answer
-//! them, so that no connection waits for another's message. Caps are the service's; sizes of messages are set in
-//! `door`; the caller's deadline is ours to keep (`grpc_timeout`), because tonic's own answers CANCELLED.
+//! A handler hands its message to `transports::requests`. Caps are the service's; sizes of messages are set in `door`; the caller's deadline is ours to keep (`grpc_timeout`), because tonic's own answers CANCELLED.
 
 mod assets;
 mod client;

@@ -4,15 +4,15 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use clearance::limits::Limits;
-use clearance::query::Answer;
-use clearance::service::{Config, ContactWatch, ContentHash, Patience, Service, ServiceError, Target, View};
+use clearance::service::{Config, ContactWatch, ContentHash, Service, ServiceError};
 use clearance::transports::grpc::status_of;
+use clearance::transports::requests;
 use clearance::transports::wire::v1::assets_client::AssetsClient;
 use clearance::transports::wire::v1::put_asset_request::Part;
 use clearance::transports::wire::v1::queries_client::QueriesClient;
 use clearance::transports::wire::v1::robots_client::RobotsClient;
 use clearance::transports::wire::v1::scenes_client::ScenesClient;
-use clearance::transports::wire::{from_proto, to_proto, v1};
+use clearance::transports::wire::{to_proto, v1};
 use tonic::transport::Channel;
 use tonic::{Code, Status, Streaming};
 
@@ -89,83 +89,31 @@ pub struct InProcess {
     pub service: Arc<Service>,
 }
 
-impl InProcess {
-    async fn ask(
-        &self,
-        context: Option<v1::Context>,
-        question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
-    ) -> Told<v1::Answer> {
-        let form = from_proto::answer_form(context.as_ref())?;
-        let patience = from_proto::patience(None, context.as_ref())?;
-        let target = from_proto::target(context.as_ref())?;
-        Ok(self.service.ask(&target, patience, move |view| Ok(to_proto::answer(&question(view)?, form))).await?)
-    }
-}
-
-impl InProcess {
-    /// A question whose answer is a message of its own.
-    async fn ask_for<T: Send + 'static>(
-        &self,
-        context: Option<v1::Context>,
-        question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
-    ) -> Told<T> {
-        let patience = from_proto::patience(None, context.as_ref())?;
-        let target = from_proto::target(context.as_ref())?;
-        Ok(self.service.ask(&target, patience, question).await?)
-    }
-
-    async fn ask_for_motions(
-        &self,
-        context: Option<v1::Context>,
-        question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
-    ) -> Told<(v1::Answer, Vec<v1::Motion>, Option<v1::BulkMotions>)> {
-        let form = from_proto::answer_form(context.as_ref())?;
-        let patience = from_proto::patience(None, context.as_ref())?;
-        let target = from_proto::target(context.as_ref())?;
-        let encoded = move |view: &View| {
-            let answer = question(view)?;
-            let (motions, bulk) = to_proto::motions(&answer, form);
-            Ok((to_proto::answer(&answer, form), motions, bulk))
-        };
-        Ok(self.service.ask(&target, patience, encoded).await?)
-    }
-}
-
 impl Door for InProcess {
     async fn open(limits: Limits) -> Self {
         Self { service: Service::new(&Config { threads: 2, limits }).unwrap() }
     }
 
     async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary> {
-        let options = from_proto::scene_options(&request)?;
-        Ok(to_proto::scene_summary(&self.service.create_scene(&request.name, &options)?))
+        Ok(requests::create_scene(&self.service, &request)?.scene.unwrap())
     }
 
     async fn delete_scene(&self, name: &str) -> Told<v1::SceneSummary> {
-        Ok(to_proto::scene_summary(&self.service.delete_scene(name)?))
+        let request = v1::DeleteSceneRequest { scene: name.to_owned() };
+        Ok(requests::delete_scene(&self.service, &request)?.scene.unwrap())
     }
 
     async fn get_scene(&self, request: v1::GetSceneRequest) -> Told<v1::SceneContents> {
-        let revision = from_proto::revision_rule(request.revision.as_ref());
-        let target = Target { scene: request.scene.clone(), revision };
-        let page = from_proto::body_page(&request, self.service.limits())?;
-        let robots = Arc::clone(self.service.robots());
-        let contents = move |view: &View| {
-            let oldest = view.oldest_revision();
-            Ok(to_proto::scene_contents(&request.scene, view.snapshot(), oldest, &robots, page))
-        };
-        Ok(self.service.ask(&target, Patience::default(), contents).await?)
+        Ok(requests::get_scene(&self.service, request, None).await?.scene.unwrap())
     }
 
     async fn scene_health(&self, scene: &str) -> Told<v1::SceneHealth> {
-        Ok(to_proto::scene_health(&self.service.scene_health(scene, true).await?))
+        let request = v1::GetSceneHealthRequest { scene: scene.to_owned(), against_rebuilt: true };
+        Ok(requests::get_scene_health(&self.service, request).await?.health.unwrap())
     }
 
     async fn apply(&self, request: v1::ApplyRequest) -> Told<v1::ApplyResponse> {
-        let (library, robots) = (Arc::clone(self.service.library()), Arc::clone(self.service.robots()));
-        let scene = request.scene.clone();
-        let change = move || from_proto::change(&request, &library, &robots);
-        Ok(to_proto::apply_response(&self.service.apply(&scene, Patience::default(), change).await?))
+        Ok(requests::apply(&self.service, request, None).await?)
     }
 
     async fn put_asset(&self, announced: v1::AssetHeader, bytes: &[u8]) -> Told<v1::PutAssetResponse> {
@@ -174,124 +122,64 @@ impl Door for InProcess {
         for chunk in bytes.chunks(7) {
             upload.push(chunk)?;
         }
-        let stored = self.service.finish_upload(upload).await?;
-        Ok(v1::PutAssetResponse {
-            sha256: stored.hash.to_string(),
-            bytes: stored.bytes as u64,
-            already_present: stored.already_present,
-        })
+        Ok(requests::put_asset_response(&self.service.finish_upload(upload).await?))
     }
 
     async fn describe_mesh(&self, request: v1::DescribeMeshRequest) -> Told<v1::MeshCard> {
-        let asked = from_proto::mesh_card_request(&request)?;
-        let card = self.service.mesh_card(asked, Patience::default(), from_proto::unusable_mesh).await?;
-        Ok(to_proto::mesh_card(&card))
+        Ok(requests::describe_mesh(&self.service, &request, None).await?.card.unwrap())
     }
 
     async fn load_robot(&self, request: v1::LoadRobotRequest) -> Told<v1::RobotModel> {
-        let robot = self.service.load_robot(move || from_proto::robot_description(request)).await?;
-        Ok(to_proto::robot_model(&robot))
+        Ok(requests::load_robot(&self.service, request).await?.robot.unwrap())
     }
 
     async fn check_states(&self, request: v1::CheckStatesRequest) -> Told<v1::Answer> {
-        self.ask(request.context.clone(), move |view| {
-            view.check_states(&from_proto::check_states(&request, view.snapshot())?)
-        })
-        .await
+        Ok(requests::check_states(&self.service, request, None).await?.answer.unwrap())
     }
 
     async fn collide(&self, request: v1::CollideRequest) -> Told<v1::Answer> {
-        let library = Arc::clone(self.service.library());
-        self.ask(request.context.clone(), move |view| {
-            view.collide(&from_proto::collide(&request, view.snapshot(), &library)?)
-        })
-        .await
+        Ok(requests::collide(&self.service, request, None).await?.answer.unwrap())
     }
 
     async fn distance(&self, request: v1::DistanceRequest) -> Told<v1::Answer> {
-        let library = Arc::clone(self.service.library());
-        self.ask(request.context.clone(), move |view| {
-            view.distance(&from_proto::distance(&request, view.snapshot(), &library)?)
-        })
-        .await
-    }
-
-    async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse> {
-        let (answer, motions, bulk) = self
-            .ask_for_motions(request.context.clone(), move |view| {
-                view.check_motions(&from_proto::check_motions(&request, view.snapshot())?)
-            })
-            .await?;
-        Ok(v1::CheckMotionsResponse { answer: Some(answer), motions, bulk })
-    }
-
-    async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse> {
-        let (answer, motions, bulk) = self
-            .ask_for_motions(request.context.clone(), move |view| {
-                view.check_motions(&from_proto::check_path(&request, view.snapshot())?)
-            })
-            .await?;
-        Ok(v1::CheckPathResponse { answer: Some(answer), motions, bulk })
+        Ok(requests::distance(&self.service, request, None).await?.answer.unwrap())
     }
 
     async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
-        let library = Arc::clone(self.service.library());
-        self.ask(request.context.clone(), move |view| {
-            view.clearance(&from_proto::clearance(&request, view.snapshot(), &library)?)
-        })
-        .await
+        Ok(requests::clearance(&self.service, request, None).await?.answer.unwrap())
+    }
+
+    async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse> {
+        Ok(requests::check_motions(&self.service, request, None).await?)
+    }
+
+    async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse> {
+        Ok(requests::check_path(&self.service, request, None).await?)
     }
 
     async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse> {
-        self.ask_for(request.context.clone(), move |view| {
-            let answers = view.cast_rays(&from_proto::cast_rays(&request, view.snapshot())?)?;
-            Ok(to_proto::cast_rays_response(&answers))
-        })
-        .await
+        Ok(requests::cast_rays(&self.service, request, None).await?)
     }
 
     async fn cast_shapes(&self, request: v1::CastShapesRequest) -> Told<v1::CastShapesResponse> {
-        let library = Arc::clone(self.service.library());
-        self.ask_for(request.context.clone(), move |view| {
-            let answers = view.cast_shapes(&from_proto::cast_shapes(&request, view.snapshot(), &library)?)?;
-            Ok(to_proto::cast_shapes_response(&answers))
-        })
-        .await
+        Ok(requests::cast_shapes(&self.service, request, None).await?)
     }
 
     async fn check_moving_pairs(&self, request: v1::CheckMovingPairsRequest) -> Told<v1::CheckMovingPairsResponse> {
-        let library = Arc::clone(self.service.library());
-        self.ask_for(request.context.clone(), move |view| {
-            let asked = from_proto::check_moving_pairs(&request, view.snapshot(), &library)?;
-            Ok(to_proto::check_moving_pairs_response(&view.check_moving_pairs(&asked)?))
-        })
-        .await
+        Ok(requests::check_moving_pairs(&self.service, request, None).await?)
     }
 
     async fn overlap(&self, request: v1::OverlapRequest) -> Told<v1::OverlapResponse> {
-        let library = Arc::clone(self.service.library());
-        self.ask_for(request.context.clone(), move |view| {
-            let answers = view.overlap(&from_proto::overlap(&request, view.snapshot(), &library)?)?;
-            Ok(to_proto::overlap_response(&answers))
-        })
-        .await
+        Ok(requests::overlap(&self.service, request, None).await?)
     }
 
     async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
-        let library = Arc::clone(self.service.library());
-        self.ask_for(request.context.clone(), move |view| {
-            let answers = view.nearest_bodies(&from_proto::nearest_bodies(&request, view.snapshot(), &library)?)?;
-            Ok(to_proto::nearest_bodies_response(&answers))
-        })
-        .await
+        Ok(requests::nearest_bodies(&self.service, request, None).await?)
     }
 
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
-        let target = from_proto::target(request.context.as_ref())?;
-        let watch = self.service.watch_contacts(&target, Patience::default(), |snapshot, limits| {
-            from_proto::contact_question(&request, snapshot, limits)
-        });
-        Ok(InProcessContacts { watch: Some(watch.await?), messages: VecDeque::new() })
+        let watch = requests::watch_contacts(&self.service, &request, None).await?;
+        Ok(InProcessContacts { watch: Some(watch), messages: VecDeque::new() })
     }
 }
 

@@ -1,0 +1,155 @@
+//! The service `Queries`: what is where, and what would be met.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::query::Answer;
+use crate::service::{ContactWatch, Patience, Service, ServiceError, View};
+use crate::transports::wire::{from_proto, to_proto, v1};
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn check_states(
+    service: &Arc<Service>,
+    message: v1::CheckStatesRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::CheckStatesResponse, ServiceError> {
+    let context = message.context.clone();
+    let question = move |view: &View| view.check_states(&from_proto::check_states(&message, view.snapshot())?);
+    Ok(v1::CheckStatesResponse { answer: Some(answer(service, context, timeout, question).await?) })
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn collide(
+    service: &Arc<Service>,
+    message: v1::CollideRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::CollideResponse, ServiceError> {
+    let (context, library) = (message.context.clone(), Arc::clone(service.library()));
+    let question = move |view: &View| view.collide(&from_proto::collide(&message, view.snapshot(), &library)?);
+    Ok(v1::CollideResponse { answer: Some(answer(service, context, timeout, question).await?) })
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn distance(
+    service: &Arc<Service>,
+    message: v1::DistanceRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::DistanceResponse, ServiceError> {
+    let (context, library) = (message.context.clone(), Arc::clone(service.library()));
+    let question = move |view: &View| view.distance(&from_proto::distance(&message, view.snapshot(), &library)?);
+    Ok(v1::DistanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn cast_rays(
+    service: &Arc<Service>,
+    message: v1::CastRaysRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::CastRaysResponse, ServiceError> {
+    ask(service, message.context.clone(), timeout, move |view| {
+        let answers = view.cast_rays(&from_proto::cast_rays(&message, view.snapshot())?)?;
+        Ok(to_proto::cast_rays_response(&answers))
+    })
+    .await
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn cast_shapes(
+    service: &Arc<Service>,
+    message: v1::CastShapesRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::CastShapesResponse, ServiceError> {
+    let library = Arc::clone(service.library());
+    ask(service, message.context.clone(), timeout, move |view| {
+        let answers = view.cast_shapes(&from_proto::cast_shapes(&message, view.snapshot(), &library)?)?;
+        Ok(to_proto::cast_shapes_response(&answers))
+    })
+    .await
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn check_moving_pairs(
+    service: &Arc<Service>,
+    message: v1::CheckMovingPairsRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::CheckMovingPairsResponse, ServiceError> {
+    let library = Arc::clone(service.library());
+    ask(service, message.context.clone(), timeout, move |view| {
+        let asked = from_proto::check_moving_pairs(&message, view.snapshot(), &library)?;
+        Ok(to_proto::check_moving_pairs_response(&view.check_moving_pairs(&asked)?))
+    })
+    .await
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn overlap(
+    service: &Arc<Service>,
+    message: v1::OverlapRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::OverlapResponse, ServiceError> {
+    let library = Arc::clone(service.library());
+    ask(service, message.context.clone(), timeout, move |view| {
+        let answers = view.overlap(&from_proto::overlap(&message, view.snapshot(), &library)?)?;
+        Ok(to_proto::overlap_response(&answers))
+    })
+    .await
+}
+
+/// # Errors
+/// As [`Service::ask`].
+pub async fn nearest_bodies(
+    service: &Arc<Service>,
+    message: v1::NearestBodiesRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::NearestBodiesResponse, ServiceError> {
+    let library = Arc::clone(service.library());
+    ask(service, message.context.clone(), timeout, move |view| {
+        let answers = view.nearest_bodies(&from_proto::nearest_bodies(&message, view.snapshot(), &library)?)?;
+        Ok(to_proto::nearest_bodies_response(&answers))
+    })
+    .await
+}
+
+/// The watch that is asked for; its steps become messages by [`to_proto::contact_messages`].
+///
+/// # Errors
+/// As [`Service::watch_contacts`].
+pub async fn watch_contacts(
+    service: &Arc<Service>,
+    message: &v1::WatchContactsRequest,
+    timeout: Option<Duration>,
+) -> Result<ContactWatch, ServiceError> {
+    let target = from_proto::target(message.context.as_ref())?;
+    let question = |snapshot: &_, limits: &_| from_proto::contact_question(message, snapshot, limits);
+    service.watch_contacts(&target, Patience { timeout, time_budget: None }, question).await
+}
+
+/// A question whose answer is encoded where it is found.
+pub(super) async fn ask<T: Send + 'static>(
+    service: &Arc<Service>,
+    context: Option<v1::Context>,
+    timeout: Option<Duration>,
+    question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+) -> Result<T, ServiceError> {
+    let patience = from_proto::patience(timeout, context.as_ref())?;
+    let target = from_proto::target(context.as_ref())?;
+    service.ask(&target, patience, question).await
+}
+
+/// A question that is answered item by item.
+pub(super) async fn answer(
+    service: &Arc<Service>,
+    context: Option<v1::Context>,
+    timeout: Option<Duration>,
+    question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
+) -> Result<v1::Answer, ServiceError> {
+    let form = from_proto::answer_form(context.as_ref())?;
+    ask(service, context, timeout, move |view| Ok(to_proto::answer(&question(view)?, form))).await
+}
