@@ -73,6 +73,12 @@ pub struct Limits {
     pub max_uploads_in_flight: usize,
     /// Longest time a question may take, seconds.
     pub max_deadline_seconds: usize,
+    /// Clients of the shared-memory door.
+    pub max_shared_memory_clients: usize,
+    /// Size of one request through shared memory, bytes; each client keeps room for three.
+    pub max_shared_memory_request_bytes: usize,
+    /// Size of one answer through shared memory, bytes; the daemon keeps room for two for each client.
+    pub max_shared_memory_response_bytes: usize,
 }
 
 impl Default for Limits {
@@ -110,6 +116,9 @@ impl Default for Limits {
             max_contacts: 250_000,
             max_uploads_in_flight: 8,
             max_deadline_seconds: 600,
+            max_shared_memory_clients: 8,
+            max_shared_memory_request_bytes: 4 << 20,
+            max_shared_memory_response_bytes: 3 << 20,
         }
     }
 }
@@ -168,6 +177,9 @@ impl Limits {
             max_contacts,
             max_uploads_in_flight,
             max_deadline_seconds,
+            max_shared_memory_clients,
+            max_shared_memory_request_bytes,
+            max_shared_memory_response_bytes,
         } = *self;
         let row = |name, value: usize, unit, what_happens| Limit { name, unit, value: value as u64, what_happens };
         vec![
@@ -217,6 +229,24 @@ impl Limits {
                 max_deadline_seconds,
                 "seconds per question",
                 "a longer deadline is shortened to this; a question without one gets it",
+            ),
+            row(
+                "max_shared_memory_clients",
+                max_shared_memory_clients,
+                "clients of the shared-memory door",
+                "connecting fails and names the number",
+            ),
+            row(
+                "max_shared_memory_request_bytes",
+                max_shared_memory_request_bytes,
+                "bytes per request through shared memory",
+                "the client refuses the request and names both numbers",
+            ),
+            row(
+                "max_shared_memory_response_bytes",
+                max_shared_memory_response_bytes,
+                "bytes per answer through shared memory",
+                EXHAUSTED,
             ),
         ]
     }

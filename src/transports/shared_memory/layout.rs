@@ -374,8 +374,7 @@ mod tests {
 
     #[test]
     fn fields_follow_one_another_where_c_puts_them() {
-        let tables =
-            [(RequestHeader::FIELDS, 256), (ResponseHeader::FIELDS, 256), (SectionEntry::FIELDS, ENTRY_BYTES)];
+        let tables = [(RequestHeader::FIELDS, 256), (ResponseHeader::FIELDS, 256), (SectionEntry::FIELDS, ENTRY_BYTES)];
         for (fields, bytes) in tables {
             let mut end = 0;
             for field in fields {

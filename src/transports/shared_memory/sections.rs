@@ -118,7 +118,8 @@ impl<'a> Sections<'a> {
     /// They are not UTF-8, or the last has no zero byte after it.
     pub fn texts(&self, kind: u32) -> Result<Vec<&'a str>, Malformed> {
         let Some(all) = self.text(kind)?.filter(|all| !all.is_empty()) else { return Ok(Vec::new()) };
-        let all = all.strip_suffix('\0').ok_or_else(|| Malformed::new(name_of(kind), "does not end with a zero byte"))?;
+        let all =
+            all.strip_suffix('\0').ok_or_else(|| Malformed::new(name_of(kind), "does not end with a zero byte"))?;
         Ok(all.split('\0').collect())
     }
 
