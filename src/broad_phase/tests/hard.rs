@@ -107,7 +107,7 @@ fn a_walk_goes_by_distance_and_then_by_number_however_many_touch() {
     let (mut none, mut few, mut many) = (0, 0, 0);
     // Numbers that fall as the boxes come, so that no order is there by chance.
     let backwards: Vec<Aabb> = boxes.iter().rev().copied().collect();
-    let (tree, _) = DynamicTree::build(boxes.iter().copied().zip((0..2000).rev()));
+    let (tree, _) = DynamicTree::build(boxes.len(), |i| (boxes[i], 1999 - i as u64));
     for size in [0.0, 0.1, 0.5, 1.0, 2.0, 5.0, 20.0] {
         for _ in 0..20 {
             let query = Aabb::centred(random.vector(10.0), Vec3::repeat(size));
