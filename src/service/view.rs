@@ -24,6 +24,8 @@ pub struct View {
     found: Found,
     stop: Stop,
     limits: Limits,
+    /// Parts may be given to the threads that answer questions.
+    many_threads: bool,
 }
 
 /// Items that one thread takes at a time, at least: fewer cost more in handing over than they gain.
@@ -33,7 +35,26 @@ const PARTS_PER_THREAD: usize = 4;
 
 impl View {
     pub(super) fn new(found: Found, stop: Stop, limits: &Limits) -> Self {
-        Self { found, stop, limits: limits.clone() }
+        Self { found, stop, limits: limits.clone(), many_threads: true }
+    }
+
+    /// A view for a thread that is none of those that answer questions, and answers all by itself.
+    pub(super) fn on_one_thread(found: Found, stop: Stop, limits: &Limits) -> Self {
+        Self { many_threads: false, ..Self::new(found, stop, limits) }
+    }
+
+    /// Does the parts of a batch, in order.
+    fn each<T: Send>(
+        &self,
+        items: usize,
+        smallest_part: usize,
+        run: impl Fn(Range<usize>) -> T + Send + Sync,
+    ) -> Vec<T> {
+        if self.many_threads {
+            split(items, smallest_part).into_par_iter().map(run).collect()
+        } else {
+            vec![run(0..items)]
+        }
     }
 
     /// What is asked.
@@ -128,7 +149,7 @@ impl View {
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
-        let parts: Vec<(Vec<B::Item>, usize)> = split(batch.len(), SMALLEST_PART).into_par_iter().map(run).collect();
+        let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
         if answers.out_of_time && answers.answered == 0 {
             return Err(ServiceError::DeadlineExceeded);
@@ -140,7 +161,7 @@ impl View {
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
-        let parts: Vec<Part> = split(question.len(), question.smallest_part()).into_par_iter().map(run).collect();
+        let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
         let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);
         if answer.out_of_time && nothing {
