@@ -18,16 +18,37 @@ pub struct Config {
     /// The gRPC door.
     #[cfg(feature = "grpc")]
     pub grpc: crate::transports::grpc::Config,
+    /// The shared-memory door.
+    #[cfg(feature = "shared-memory")]
+    pub shared_memory: SharedMemory,
     /// How long requests under way may take to finish once the daemon is told to end.
     pub drain: Duration,
     /// Which log lines are written, as a filter of `tracing`.
     pub log: String,
 }
 
+/// Whether there is a shared-memory door.
+#[cfg(feature = "shared-memory")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SharedMemory {
+    /// There is none.
+    Off,
+    /// Nobody asked for it: where it cannot be opened, the daemon says so in its log and serves the other doors.
+    IfPossible(crate::transports::shared_memory::Config),
+    /// It was asked for: a daemon that cannot open it does not start.
+    On(crate::transports::shared_memory::Config),
+}
+
 /// What holds if nobody says.
 pub mod defaults {
     /// Where the gRPC door is.
     pub const GRPC_ADDRESS: &str = "127.0.0.1:50551";
+    /// What the shared-memory door is called.
+    pub const SHARED_MEMORY_NAME: &str = "clearance";
+    /// The folder of the shared-memory door.
+    pub const SHARED_MEMORY_ROOT: &str = "/tmp/clearance";
+    /// Microseconds that the shared-memory door looks for the next request before it sleeps.
+    pub const SHARED_MEMORY_SPIN: u64 = 20;
     /// Seconds that requests under way may take to finish.
     pub const DRAIN_SECONDS: u64 = 10;
     /// Which log lines are written.
@@ -46,6 +67,8 @@ pub struct Settings {
     pub log: Option<String>,
     /// The gRPC door.
     pub grpc: GrpcSettings,
+    /// The shared-memory door.
+    pub shared_memory: SharedMemorySettings,
     /// Caps by their names in [`Limits`].
     pub limits: toml::Table,
 }
@@ -58,6 +81,48 @@ pub struct GrpcSettings {
     pub address: Option<String>,
     /// Listen beyond loopback although there is neither TLS nor a token.
     pub insecure: Option<bool>,
+}
+
+/// Choices for the shared-memory door.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SharedMemorySettings {
+    /// Whether there is one; unsaid: if it can be opened.
+    pub enabled: Option<bool>,
+    /// What it is called: 1 to 32 of a-z, 0-9, _ and -. No other door of the machine may have the name.
+    pub name: Option<String>,
+    /// Absolute path of its folder.
+    pub root: Option<PathBuf>,
+    /// Microseconds that it looks for the next request before it sleeps.
+    pub spin_microseconds: Option<u64>,
+}
+
+impl SharedMemorySettings {
+    fn over(self, weaker: Self) -> Self {
+        Self {
+            enabled: self.enabled.or(weaker.enabled),
+            name: self.name.or(weaker.name),
+            root: self.root.or(weaker.root),
+            spin_microseconds: self.spin_microseconds.or(weaker.spin_microseconds),
+        }
+    }
+
+    #[cfg(feature = "shared-memory")]
+    fn resolve(self) -> SharedMemory {
+        // Whoever gives it a name wants it.
+        let asked_for = self.enabled.unwrap_or(self.name.is_some());
+        let spin = self.spin_microseconds.unwrap_or(defaults::SHARED_MEMORY_SPIN);
+        let config = crate::transports::shared_memory::Config {
+            name: self.name.unwrap_or_else(|| defaults::SHARED_MEMORY_NAME.to_owned()),
+            root: self.root.unwrap_or_else(|| PathBuf::from(defaults::SHARED_MEMORY_ROOT)),
+            spin: Duration::from_micros(spin),
+        };
+        match self.enabled {
+            Some(false) => SharedMemory::Off,
+            Some(true) | None if asked_for => SharedMemory::On(config),
+            Some(true) | None => SharedMemory::IfPossible(config),
+        }
+    }
 }
 
 /// Why there is no configuration.
@@ -118,6 +183,7 @@ impl Settings {
                 address: self.grpc.address.or(weaker.grpc.address),
                 insecure: self.grpc.insecure.or(weaker.grpc.insecure),
             },
+            shared_memory: self.shared_memory.over(weaker.shared_memory),
             limits,
         }
     }
@@ -136,6 +202,8 @@ impl Settings {
                 address: self.grpc.address.unwrap_or_else(|| defaults::GRPC_ADDRESS.to_owned()),
                 insecure: self.grpc.insecure.unwrap_or(false),
             },
+            #[cfg(feature = "shared-memory")]
+            shared_memory: self.shared_memory.resolve(),
             drain: Duration::from_secs(self.drain_seconds.unwrap_or(defaults::DRAIN_SECONDS)),
             log: self.log.unwrap_or_else(|| defaults::LOG.to_owned()),
         })
@@ -159,6 +227,17 @@ mod tests {
         assert_eq!((config.service.limits.max_items, config.service.limits.max_pairs), (9, 8));
         assert_eq!(config.service.limits.max_scenes, Limits::default().max_scenes);
         assert_eq!(config.drain, Duration::from_secs(defaults::DRAIN_SECONDS));
+    }
+
+    #[cfg(feature = "shared-memory")]
+    #[test]
+    fn shared_memory_that_was_asked_for_is_told_from_what_is_there_by_default() {
+        let of = |text| settings(text).resolve().unwrap().shared_memory;
+        assert!(matches!(of(""), SharedMemory::IfPossible(_)));
+        assert!(matches!(of("[shared_memory]\nroot = \"/tmp/x\""), SharedMemory::IfPossible(_)));
+        assert!(matches!(of("[shared_memory]\nenabled = true"), SharedMemory::On(_)));
+        assert!(matches!(of("[shared_memory]\nname = \"mine\""), SharedMemory::On(config) if config.name == "mine"));
+        assert_eq!(of("[shared_memory]\nenabled = false\nname = \"mine\""), SharedMemory::Off);
     }
 
     #[test]

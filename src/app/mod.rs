@@ -5,7 +5,9 @@ mod daemon;
 mod logging;
 mod signals;
 
-pub use config::{Config, ConfigError, GrpcSettings, Settings, defaults};
+#[cfg(feature = "shared-memory")]
+pub use config::SharedMemory;
+pub use config::{Config, ConfigError, GrpcSettings, Settings, SharedMemorySettings, defaults};
 pub use daemon::{Daemon, Drained, RunError, StartError};
 pub use logging::{BadFilter, log_to_stderr};
 pub use signals::stop_signal;

@@ -4,7 +4,9 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use super::exit_code::Exit;
-use crate::app::{Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, StartError, defaults};
+use crate::app::{
+    Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, defaults,
+};
 use crate::app::{log_to_stderr, stop_signal};
 
 /// Flags of `clearance serve`. Each may also stand in the environment, or in the file.
@@ -17,6 +19,17 @@ pub struct Serve {
     #[arg(long, value_name = "HOST:PORT", env = "CLEARANCE_GRPC_ADDRESS",
         help = format!("Where gRPC listens; port 0 takes any free one [default: {}]", defaults::GRPC_ADDRESS))]
     pub grpc_address: Option<String>,
+    /// What the shared-memory door is called; with a name given, a daemon that cannot open it does not start.
+    #[arg(long, value_name = "NAME", env = "CLEARANCE_SHARED_MEMORY_NAME",
+        help = format!("What the shared-memory door is called; no other door of the machine may have the name [default: {}]", defaults::SHARED_MEMORY_NAME))]
+    pub shared_memory_name: Option<String>,
+    /// The folder of the shared-memory door.
+    #[arg(long, value_name = "DIR", env = "CLEARANCE_SHARED_MEMORY_ROOT",
+        help = format!("The folder of the shared-memory door [default: {}]", defaults::SHARED_MEMORY_ROOT))]
+    pub shared_memory_root: Option<PathBuf>,
+    /// No shared-memory door.
+    #[arg(long, env = "CLEARANCE_NO_SHARED_MEMORY")]
+    pub no_shared_memory: bool,
     /// Listen beyond loopback although there is neither TLS nor a token.
     #[arg(long, env = "CLEARANCE_INSECURE")]
     pub insecure: bool,
@@ -62,6 +75,12 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
         drain_seconds: serve.drain_seconds,
         log: serve.log.clone(),
         grpc: GrpcSettings { address: serve.grpc_address.clone(), insecure: serve.insecure.then_some(true) },
+        shared_memory: SharedMemorySettings {
+            enabled: serve.no_shared_memory.then_some(false),
+            name: serve.shared_memory_name.clone(),
+            root: serve.shared_memory_root.clone(),
+            spin_microseconds: None,
+        },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -95,6 +114,17 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
                 StartError::Grpc(crate::transports::grpc::BindError::NotLoopback { .. }) => Exit::Usage,
                 #[cfg(feature = "grpc")]
                 StartError::Grpc(crate::transports::grpc::BindError::Address { .. }) => Exit::Failure,
+                #[cfg(feature = "shared-memory")]
+                StartError::SharedMemory(
+                    crate::transports::shared_memory::BindError::Endpoint(_)
+                    | crate::transports::shared_memory::BindError::TooSmall { .. },
+                ) => Exit::Usage,
+                #[cfg(feature = "shared-memory")]
+                StartError::SharedMemory(
+                    crate::transports::shared_memory::BindError::NoSpace(_)
+                    | crate::transports::shared_memory::BindError::Taken { .. }
+                    | crate::transports::shared_memory::BindError::System { .. },
+                ) => Exit::Failure,
                 StartError::Threads(_) => Exit::Failure,
             };
             return failed(exit, &error);

@@ -51,10 +51,9 @@ impl View {
         run: impl Fn(Range<usize>) -> T + Send + Sync,
     ) -> Vec<T> {
         if self.many_threads {
-            split(items, smallest_part).into_par_iter().map(run).collect()
-        } else {
-            vec![run(0..items)]
+            return split(items, smallest_part).into_par_iter().map(run).collect();
         }
+        (items > 0).then(|| run(0..items)).into_iter().collect()
     }
 
     /// What is asked.

@@ -1,7 +1,5 @@
 //! The doors: each turns what arrives into a call of [`crate::service`] and its answer into what leaves.
 
-#[cfg(any(feature = "grpc", feature = "shared-memory"))]
-mod error_card;
 #[cfg(feature = "grpc")]
 pub mod grpc;
 #[cfg(feature = "grpc")]

@@ -15,7 +15,7 @@ struct Daemon {
 impl Daemon {
     fn start() -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_clearance"))
-            .args(["serve", "--grpc-address", "127.0.0.1:0"])
+            .args(["serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory"])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
             .spawn()

@@ -5,5 +5,7 @@ mod conformance;
 mod connections;
 mod histories;
 mod process;
+#[cfg(feature = "shared-memory")]
+mod shared_memory;
 mod support;
 mod watching;

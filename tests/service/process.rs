@@ -11,7 +11,10 @@ use crate::support::watchdog::{eventually, watched};
 
 fn serve() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
-    command.args(["serve", "--grpc-address", "127.0.0.1:0"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(["serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     command
 }
 

@@ -2,6 +2,7 @@
 //! the wire; and beside them, where wanted, sides, witnesses and listed pairs.
 
 use super::codes;
+use super::error_card::ErrorCard;
 use super::layout::{ABI_HASH, MAGIC, ResponseHeader, VERSION, kind};
 use super::request::Nonce;
 use super::sections::Writer;
@@ -9,7 +10,6 @@ use crate::geometry::Vec3;
 use crate::narrow_phase::Cost;
 use crate::query::{Answer, Answers, CastHit, CastItem, ItemAnswer, MotionAnswer, PairAnswer, Side, Wants, Witness};
 use crate::service::ServiceError;
-use crate::transports::error_card::ErrorCard;
 
 /// What an answer has of its request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +115,8 @@ pub fn error_message(nonce: Nonce, error: &ServiceError) -> Vec<u8> {
 
 /// The text up to the longest that fits, at a character's end.
 fn cut(text: &str) -> &str {
-    &text[..text.floor_char_boundary(LONGEST_TEXT)]
+    let end = (0..=text.len().min(LONGEST_TEXT)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
+    &text[..end]
 }
 
 fn framed(frame: &Frame, cost: Cost) -> ResponseHeader {

@@ -10,6 +10,7 @@ use iceoryx2::port::listener::Listener;
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::prelude::{AllocationStrategy, PortName};
 use iceoryx2::service::attribute::AttributeKey;
+use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 use iceoryx2::service::port_factory::PortFactory as _;
 use iceoryx2::service::port_factory::client::ClientCreateError;
 
@@ -126,7 +127,10 @@ impl Client {
         }
         let node = endpoint.node().map_err(nobody)?;
         let service = node.service_builder(&endpoint.service("questions").map_err(ClientError::System)?);
-        let questions = service.request_response::<[u8], [u8]>().open().map_err(|error| nobody(told(error)))?;
+        let questions = service.request_response::<[u8], [u8]>().open().map_err(|error| {
+            let full = error == RequestResponseOpenError::ExceedsMaxNumberOfNodes;
+            if full { ClientError::TooManyClients } else { nobody(told(error)) }
+        })?;
         let theirs = attribute_of(&questions, attribute::ABI_HASH)?;
         if theirs != format!("{ABI_HASH:016x}") {
             return Err(ClientError::OtherLayout { theirs });
@@ -137,10 +141,11 @@ impl Client {
         space::check(3_usize.saturating_mul(most_bytes))?;
         let port = questions.client_builder();
         let port = port.initial_max_slice_len(most_bytes).allocation_strategy(AllocationStrategy::Static).create();
-        let port = port.map_err(|error| match error {
-            ClientCreateError::ExceedsMaxSupportedClients => ClientError::TooManyClients,
-            other => ClientError::System(told(other)),
-        })?;
+        let full = |error: &ClientCreateError| *error == ClientCreateError::ExceedsMaxSupportedClients;
+        let port =
+            port.map_err(
+                |error| if full(&error) { ClientError::TooManyClients } else { ClientError::System(told(error)) },
+            )?;
         space::take(&endpoint.prefix())?;
         let id = random()?;
         let events = |part| -> Result<Events, ClientError> {

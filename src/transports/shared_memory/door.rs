@@ -123,9 +123,9 @@ impl Config {
             .max_loaned_responses_per_request(1)
             .override_response_preallocation(move |_| answers)
             .create();
-        let server = server.map_err(|error| match error {
-            ServerCreateError::ExceedsMaxSupportedServers => BindError::Taken { name: self.name.clone() },
-            other => failed(told(other)),
+        let taken = |error: &ServerCreateError| *error == ServerCreateError::ExceedsMaxSupportedServers;
+        let server = server.map_err(|error| {
+            if taken(&error) { BindError::Taken { name: self.name.clone() } } else { failed(told(error)) }
         })?;
         let asked = events(&endpoint, &node, "asked", 1, clients + 2).map_err(failed)?;
         let answered = events(&endpoint, &node, "answered", clients + 1, 1).map_err(failed)?;

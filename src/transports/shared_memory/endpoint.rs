@@ -49,11 +49,6 @@ const LONGEST_NAME: usize = 32;
 const LONGEST_ROOT: usize = 200;
 
 impl Endpoint {
-    /// What a door is called if nobody says.
-    pub const DEFAULT_NAME: &'static str = "clearance";
-    /// Where its files are if nobody says.
-    pub const DEFAULT_ROOT: &'static str = "/tmp/clearance";
-
     /// Checks name and folder. The name has to be the only one of its kind on the machine, whatever the folder.
     ///
     /// # Errors

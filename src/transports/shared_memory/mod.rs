@@ -10,6 +10,7 @@ mod client;
 mod codes;
 mod door;
 mod endpoint;
+mod error_card;
 pub mod layout;
 mod message;
 mod questions;

@@ -5,7 +5,7 @@ use crate::service::ServiceError;
 
 /// An error as it leaves the house, beside its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ErrorCard {
+pub(super) struct ErrorCard {
     /// The number of the gRPC status.
     pub code: u8,
     /// A name of `ErrorReason` without its prefix.
@@ -74,5 +74,42 @@ fn details(error: &ServiceError) -> Vec<(&'static str, String)> {
         | ServiceError::HashMismatch { .. }
         | ServiceError::ShuttingDown
         | ServiceError::Internal { .. } => Vec::new(),
+    }
+}
+
+#[cfg(all(test, feature = "grpc"))]
+mod tests {
+    use super::*;
+    use crate::limits::LimitExceeded;
+    use crate::scene::{Epoch, Revision};
+    use crate::transports::grpc::status_of;
+
+    #[test]
+    fn an_error_has_the_same_code_reason_and_details_as_through_grpc() {
+        let (revision, text) = (Revision(4), || "x".to_owned());
+        let errors = [
+            ServiceError::invalid("items[3].pose", "is odd"),
+            ServiceError::NotFound { what: "scene", name: text() },
+            ServiceError::AlreadyExists { what: "scene", name: text() },
+            ServiceError::EditRefused { field: text(), problem: text() },
+            ServiceError::KeyReused { key: text() },
+            ServiceError::WrongEpoch { asked: Epoch(1), current: Epoch(2) },
+            ServiceError::RevisionMovedOn { expected: revision, current: Revision(5) },
+            ServiceError::RevisionGone { asked: revision, oldest: Revision(5) },
+            ServiceError::RevisionNotYet { asked: revision, current: Revision(3) },
+            ServiceError::Limit(LimitExceeded { limit: "max_items", asked: 7, allowed: 5 }),
+            ServiceError::DeadlineExceeded,
+            ServiceError::HashMismatch { problem: text() },
+            ServiceError::ShuttingDown,
+            ServiceError::Internal { incident: 9 },
+        ];
+        for error in errors {
+            let (card, status) = (ErrorCard::of(&error), status_of(&error));
+            assert_eq!(i32::from(card.code), status.code() as i32, "{error}");
+            let of = |key: &str| status.metadata().get(format!("clearance-{key}")).map(|value| value.to_str().unwrap());
+            assert_eq!(of("reason"), Some(card.reason), "{error}");
+            card.details.iter().for_each(|(key, value)| assert_eq!(of(key), Some(value.as_str()), "{error}"));
+            assert_eq!(status.metadata().len(), 1 + card.details.len(), "{error}");
+        }
     }
 }
