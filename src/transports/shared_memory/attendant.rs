@@ -14,7 +14,7 @@ use tokio::runtime::Handle;
 
 use super::answer::error_message;
 use super::door::Ports;
-use super::endpoint::{Ipc, listener_name, told};
+use super::endpoint::{Ipc, Line, lines, listener_name, sleep, told};
 use super::layout::RequestHeader;
 use super::questions::answered;
 use super::request::{ClientId, Nonce, Question, Request, decode};
@@ -24,7 +24,7 @@ use crate::query::Subject;
 use crate::service::{Service, ServiceError};
 
 /// A request that waits for its answer.
-type Waiting = ActiveRequest<Ipc, [u8], (), [u8], ()>;
+type Waiting = ActiveRequest<Ipc, [Line], (), [Line], ()>;
 
 /// Questions of no more items than this are answered on the door's own thread: to hand them over costs more.
 const SMALL: usize = 8;
@@ -96,7 +96,7 @@ impl Attendant {
                 continue;
             }
             let look = if draining { LOOK_DRAINING } else { LOOK };
-            let woken = self.ports.asked.timed_wait(|_| {}, look).map_err(told)?;
+            let woken = sleep(&self.ports.asked, look)?;
             if woken == 0 && !draining || cleaned.elapsed() > CLEANUP {
                 self.ports.node.try_cleanup_dead_nodes();
                 cleaned = Instant::now();
@@ -128,7 +128,7 @@ impl Attendant {
         let limits = self.desk.service.limits();
         let (most, most_answered) = (limits.max_shared_memory_request_bytes, limits.max_shared_memory_response_bytes);
         // From here on only the copy counts: the client may go on writing to its memory.
-        let shared = waiting.payload();
+        let shared = waiting.payload().as_flattened();
         let size = LimitExceeded::check("max_shared_memory_request_bytes", shared.len(), most);
         let message = shared.get(..shared.len().min(most)).unwrap_or_default().to_vec();
         let header = RequestHeader::read(&message);
@@ -206,19 +206,19 @@ impl Desk {
     }
 
     fn try_give(&self, waiting: &Waiting, message: &[u8]) -> Result<(), String> {
-        let until = Instant::now() + ROOM_PATIENCE;
+        let (lines, until) = (lines(message), Instant::now() + ROOM_PATIENCE);
         let room = loop {
             // A dead client's slot may have a new owner; the nonce keeps the new one safe, this spares it the work.
             if !waiting.is_connected() {
                 return Ok(());
             }
-            match waiting.loan_slice_uninit(message.len()) {
+            match waiting.loan_slice_uninit(lines.len()) {
                 Ok(room) => break room,
                 Err(LoanError::OutOfMemory) if Instant::now() < until => thread::sleep(Duration::from_millis(1)),
                 Err(error) => return Err(error.to_string()),
             }
         };
-        room.write_from_slice(message).send().map_err(told).map(drop)
+        room.write_from_slice(lines).send().map_err(told).map(drop)
     }
 
     fn wake(&self, client: ClientId) {

@@ -8,14 +8,16 @@ use iceoryx2::node::Node;
 use iceoryx2::port::client::Client as Port;
 use iceoryx2::port::listener::Listener;
 use iceoryx2::port::notifier::Notifier;
-use iceoryx2::prelude::{AllocationStrategy, PortName};
+use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy, PortName};
 use iceoryx2::service::attribute::AttributeKey;
 use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 use iceoryx2::service::port_factory::PortFactory as _;
 use iceoryx2::service::port_factory::client::ClientCreateError;
 
-use super::endpoint::{BadEndpoint, Endpoint, Events, Ipc, Questions, attribute, listener_name, told};
-use super::layout::ABI_HASH;
+use super::endpoint::{
+    BadEndpoint, Endpoint, Events, Ipc, Line, Questions, attribute, lines, listener_name, sleep, told,
+};
+use super::layout::{ABI_HASH, ALIGNMENT};
 use super::message::{Ask, Envelope, request_message};
 use super::reply::{Came, Refusal, Reply, decode};
 use super::request::{ClientId, Nonce};
@@ -93,14 +95,18 @@ pub enum ClientError {
 /// While it waits, a client looks this often whether the daemon is still alive.
 const ALIVE: Duration = Duration::from_millis(250);
 
+/// Whether the daemon has fetched the request before is looked at this often.
+const FETCHED: Duration = Duration::from_millis(1);
+
 /// A connection to a daemon on the same machine.
 #[derive(Debug)]
 pub struct Client {
-    port: Port<Ipc, [u8], (), [u8], ()>,
+    port: Port<Ipc, [Line], (), [Line], ()>,
     asked: Notifier<Ipc>,
     answered: Listener<Ipc>,
     id: ClientId,
     most_bytes: usize,
+    questions: Questions,
     node: Node<Ipc>,
 }
 
@@ -127,7 +133,7 @@ impl Client {
         }
         let node = endpoint.node().map_err(nobody)?;
         let service = node.service_builder(&endpoint.service("questions").map_err(ClientError::System)?);
-        let questions = service.request_response::<[u8], [u8]>().open().map_err(|error| {
+        let questions = service.request_response::<[Line], [Line]>().open().map_err(|error| {
             let full = error == RequestResponseOpenError::ExceedsMaxNumberOfNodes;
             if full { ClientError::TooManyClients } else { nobody(told(error)) }
         })?;
@@ -140,7 +146,12 @@ impl Client {
         // One request under way, one that the daemon has not let go of, one being written.
         space::check(3_usize.saturating_mul(most_bytes))?;
         let port = questions.client_builder();
-        let port = port.initial_max_slice_len(most_bytes).allocation_strategy(AllocationStrategy::Static).create();
+        let port = port
+            .initial_max_slice_len(most_bytes.div_ceil(ALIGNMENT))
+            .allocation_strategy(AllocationStrategy::Static)
+            // Delivering is tried again here, where the timeout is known.
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create();
         let full = |error: &ClientCreateError| *error == ClientCreateError::ExceedsMaxSupportedClients;
         let port =
             port.map_err(
@@ -157,7 +168,7 @@ impl Client {
         let answered = events("answered")?.listener_builder().name(&listener).create();
         let asked = asked.map_err(|error| ClientError::System(told(error)))?;
         let answered = answered.map_err(|error| ClientError::System(told(error)))?;
-        Ok(Self { port, asked, answered, id, most_bytes, node })
+        Ok(Self { port, asked, answered, id, most_bytes, questions, node })
     }
 
     /// The longest request that the daemon takes, bytes.
@@ -186,18 +197,32 @@ impl Client {
     pub fn exchange(&mut self, message: &[u8], nonce: Nonce, options: &Options) -> Result<Reply, ClientError> {
         LimitExceeded::check("max_shared_memory_request_bytes", message.len(), self.most_bytes)?;
         let system = |problem: String| ClientError::System(problem);
-        let room = self.port.loan_slice_uninit(message.len()).map_err(|error| system(told(error)))?;
-        let pending = room.write_from_slice(message).send().map_err(|error| system(told(error)))?;
-        if pending.number_of_server_connections() == 0 {
-            return Err(ClientError::Gone);
-        }
-        self.asked.notify().map_err(|error| system(told(error)))?;
+        let padded: Vec<u8>;
+        let message = if message.len().is_multiple_of(ALIGNMENT) {
+            message
+        } else {
+            padded = [message, &vec![0; message.len().next_multiple_of(ALIGNMENT) - message.len()]].concat();
+            &padded
+        };
         let (begun, mut looked) = (Instant::now(), Instant::now());
+        let lines = lines(message);
+        let pending = loop {
+            let room = self.port.loan_slice_uninit(lines.len()).map_err(|error| system(told(error)))?;
+            match room.write_from_slice(lines).send() {
+                Ok(pending) if pending.number_of_server_connections() > 0 => break pending,
+                Ok(_) if self.questions.dynamic_config().number_of_servers() == 0 => return Err(ClientError::Gone),
+                // The daemon does not fetch: it still has the request that was given up before.
+                Ok(_) if begun.elapsed() < options.timeout => std::thread::sleep(FETCHED),
+                Ok(_) => return Err(ClientError::Timeout(options.timeout)),
+                Err(error) => return Err(system(told(error))),
+            }
+        };
+        self.asked.notify().map_err(|error| system(told(error)))?;
         loop {
             // Asked before the look for an answer, so that an answer sent before the end is not missed.
             let connected = pending.is_connected();
             if let Some(response) = pending.receive().map_err(|error| system(told(error)))? {
-                match decode(response.payload().to_vec(), nonce)? {
+                match decode(response.payload().as_flattened().to_vec(), nonce)? {
                     Came::Reply(reply) => return Ok(reply),
                     Came::Refusal(refusal) => return Err(refusal.into()),
                     Came::Foreign => continue,
@@ -214,7 +239,7 @@ impl Client {
                 std::hint::spin_loop();
                 continue;
             }
-            self.answered.timed_wait(|_| {}, left.min(ALIVE)).map_err(|error| system(told(error)))?;
+            sleep(&self.answered, left.min(ALIVE)).map_err(system)?;
             if looked.elapsed() >= ALIVE {
                 // Only this makes the connection to a dead daemon end.
                 self.node.try_cleanup_dead_nodes();

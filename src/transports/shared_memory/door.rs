@@ -20,8 +20,8 @@ use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 
 use super::attendant::Attendant;
-use super::endpoint::{BadEndpoint, Endpoint, Events, Ipc, Questions, UNDER_WAY, alignment, attribute, told};
-use super::layout::ABI_HASH;
+use super::endpoint::{BadEndpoint, Endpoint, Events, Ipc, Line, Questions, UNDER_WAY, alignment, attribute, told};
+use super::layout::{ABI_HASH, ALIGNMENT};
 use super::space::{self, NoSpace};
 use crate::limits::Limits;
 use crate::service::{Door, Service};
@@ -78,7 +78,7 @@ pub enum BindError {
 const LEAST_BYTES: usize = 64 << 10;
 
 /// The server's port.
-pub(super) type Port = Server<Ipc, [u8], (), [u8], ()>;
+pub(super) type Port = Server<Ipc, [Line], (), [Line], ()>;
 
 /// What the door keeps open. The order of the fields is the order in which they are closed.
 #[derive(Debug)]
@@ -117,7 +117,7 @@ impl Config {
         let questions = questions(&endpoint, &node, limits).map_err(failed)?;
         let server = questions
             .server_builder()
-            .initial_max_slice_len(answer)
+            .initial_max_slice_len(answer.div_ceil(ALIGNMENT))
             .allocation_strategy(AllocationStrategy::Static)
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .max_loaned_responses_per_request(1)
@@ -166,7 +166,7 @@ fn questions(endpoint: &Endpoint, node: &Node<Ipc>, limits: &Limits) -> Result<Q
         attributes = attributes.require(&key, &value).map_err(told)?;
     }
     node.service_builder(&endpoint.service("questions")?)
-        .request_response::<[u8], [u8]>()
+        .request_response::<[Line], [Line]>()
         .request_payload_alignment(alignment())
         .response_payload_alignment(alignment())
         .enable_safe_overflow_for_requests(false)

@@ -1,9 +1,11 @@
 //! Where do daemon and clients meet? Names, sizes and the settings of iceoryx2 that both sides have to agree on.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use iceoryx2::config::Config as IpcConfig;
 use iceoryx2::node::Node;
+use iceoryx2::port::listener::{Listener, ListenerWaitError};
 use iceoryx2::prelude::{
     FileName, LogLevel, NodeBuilder, SemanticString, ServiceName, SignalHandlingMode, ipc_threadsafe, set_log_level,
 };
@@ -13,8 +15,10 @@ use super::layout::ALIGNMENT;
 
 /// Between processes, with ports that several threads may use.
 pub(super) type Ipc = ipc_threadsafe::Service;
-/// Questions and answers: runs of bytes.
-pub(super) type Questions = request_response::PortFactory<Ipc, [u8], (), [u8], ()>;
+/// What messages are made of. Slices of single bytes that are aligned to 64 would take 64 bytes for each.
+pub(super) type Line = [u8; ALIGNMENT];
+/// Questions and answers: runs of lines.
+pub(super) type Questions = request_response::PortFactory<Ipc, [Line], (), [Line], ()>;
 /// Wake-ups.
 pub(super) type Events = event::PortFactory<Ipc>;
 
@@ -107,6 +111,20 @@ pub(super) fn told(error: impl std::fmt::Debug) -> String {
 /// The alignment of messages, as iceoryx2 takes it.
 pub(super) fn alignment() -> iceoryx2::prelude::Alignment {
     iceoryx2::prelude::Alignment::new(ALIGNMENT).unwrap_or(iceoryx2::prelude::Alignment::ALIGN_8)
+}
+
+/// Sleeps until somebody notifies, or for a time; how many notifications came. A signal only wakes: SIGCONT, for one,
+/// comes to every process that was stopped.
+pub(super) fn sleep(listener: &Listener<Ipc>, time: Duration) -> Result<u64, String> {
+    match listener.timed_wait(|_| {}, time) {
+        Err(ListenerWaitError::InterruptSignal) => Ok(0),
+        woken => woken.map_err(told),
+    }
+}
+
+/// A message as lines; messages are padded to whole ones.
+pub(super) fn lines(message: &[u8]) -> &[Line] {
+    message.as_chunks().0
 }
 
 /// The name of a client's listener: its id in hexadecimal.

@@ -246,6 +246,7 @@ impl Writer {
     /// The message, once `header` has written its header, told the number of sections and the length.
     #[must_use]
     pub fn finish(mut self, header: impl FnOnce(u32, u64, &mut [u8])) -> Vec<u8> {
+        self.bytes.resize(self.bytes.len().next_multiple_of(ALIGNMENT), 0);
         let (sections, total) = (self.sections(), self.bytes.len() as u64);
         header(sections, total, &mut self.bytes);
         self.bytes

@@ -45,7 +45,7 @@ fn as_a_client_that_waits() {
 async fn waiting_client(place: &Place, revision: u64) -> Killed {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "--ignored", "--nocapture", "shared_memory::faults::as_a_client_that_waits"]);
-    command.env(NAME, &place.name).env(ROOT, place.root()).env("CLEARANCE_TEST_REVISION", revision.to_string());
+    command.env(NAME, &*place.name).env(ROOT, place.root()).env("CLEARANCE_TEST_REVISION", revision.to_string());
     let child = Killed(command.stdout(Stdio::null()).spawn().unwrap());
     eventually("a request under way", || place.daemon.service.queries_in_flight() == 1).await;
     child
@@ -102,7 +102,7 @@ async fn a_daemon_killed_in_the_middle_is_told_and_the_next_one_takes_its_place(
     let grpc = watched("connecting", grpc::Client::connect(&address)).await.unwrap();
     grpc.create_scene(SCENE).await.unwrap();
     let waiting = {
-        let (name, root) = (name.clone(), root.path().to_owned());
+        let (name, root) = (name.to_string(), root.path().to_owned());
         tokio::task::spawn_blocking(move || {
             let mut client = Client::connect(&name, &root).unwrap();
             let subjects = [clearance::transports::shared_memory::PlainSubject::All];
@@ -136,20 +136,89 @@ async fn a_name_that_is_taken_is_told_and_ends_the_start() {
     let output = tokio::task::block_in_place(|| serve(&name, root.path()).output().unwrap());
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("another daemon serves shared memory") && text.contains(&name), "{text}");
+    assert!(text.contains("another daemon serves shared memory") && text.contains(&*name), "{text}");
 }
 
-/// A daemon whose /dev/shm is a small file system of its own, as in a container; `None` where the system does not let
-/// this process make one.
-fn serve_in_small_memory(bytes: usize, arguments: &[&str]) -> Option<Command> {
+#[tokio::test(flavor = "multi_thread")]
+async fn a_stopped_daemon_costs_no_more_than_the_timeout_and_its_late_answer_is_not_taken() {
+    let (name, root) = (unused_name(), tempfile::tempdir().unwrap());
+    let (daemon, address) = started(&name, root.path()).await;
+    let grpc = watched("connecting", grpc::Client::connect(&address)).await.unwrap();
+    grpc.create_scene(SCENE).await.unwrap();
+    let signal = |signal: &str| {
+        let sent = Command::new("kill").args([signal, &daemon.0.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+    };
+    let mut client = connect(&name, root.path()).unwrap();
+    let (subjects, context) = ([clearance::transports::shared_memory::PlainSubject::All; 2], Context::default());
+    signal("-STOP");
+    let short = Options { timeout: Duration::from_millis(300), ..Options::default() };
+    let outcome = ask(&mut client, Ask::Collide(&subjects, &context), &short);
+    assert!(matches!(outcome, Err(ClientError::Timeout(_))), "{outcome:?}");
+    signal("-CONT");
+    for _ in 0..20 {
+        let reply = ask(&mut client, Ask::Collide(&subjects[..1], &context), &Options::default()).unwrap();
+        assert_eq!(reply.items(), 1);
+    }
+}
+
+/// Not a test by itself: runs where /dev/shm is small, fills it to the last byte, and asks.
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "a process of memory_that_becomes_full"]
+async fn as_one_whose_memory_becomes_full() {
+    let place = Place::with_crane(small()).await;
+    let mut client = place.client();
+    let mut filler = std::fs::File::create("/dev/shm/filler").unwrap();
+    let block = vec![1; 4096];
+    while std::io::Write::write_all(&mut filler, &block).is_ok() {}
+    // Requests and answers of full size: every page of both segments is written to.
+    let context =
+        Context { wants: clearance::query::Wants { distance: true, ..Default::default() }, ..Context::default() };
+    let question = crane_states([0.0, -0.2].repeat(10_000), context);
+    for _ in 0..4 {
+        let reply = ask(&mut client, Ask::States(&question, 2), &Options::default()).unwrap();
+        assert_eq!(reply.items(), 10_000);
+    }
+    let long = crane_states([0.0, -0.2].repeat(60_000), Context::default());
+    for _ in 0..4 {
+        assert_eq!(ask(&mut client, Ask::States(&long, 2), &Options::default()).unwrap().items(), 60_000);
+    }
+    let error = connect(&place.name, &place.root()).unwrap_err();
+    assert!(matches!(error, ClientError::NoSpace(_) | ClientError::NoDaemon { .. }), "{error}");
+    println!("refused: {error}");
+    assert!(ask(&mut client, Ask::States(&question, 2), &Options::default()).is_ok(), "those inside go on");
+}
+
+/// Pages are taken at the start: neither daemon nor client dies of SIGBUS when others fill /dev/shm.
+#[tokio::test(flavor = "multi_thread")]
+async fn memory_that_becomes_full_hurts_nobody_inside() {
+    let program = std::env::current_exe().unwrap();
+    let script = "mount -t tmpfs -o size=16m tmpfs /dev/shm && exec \"$0\" \"$@\"";
+    let Some(mut command) = in_a_mount_namespace(script, &program) else { return };
+    command.args(["--exact", "--ignored", "--nocapture", "shared_memory::faults::as_one_whose_memory_becomes_full"]);
+    let output = tokio::task::block_in_place(|| command.output().unwrap());
+    let text = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+    assert!(output.status.success() && text.contains("1 passed"), "{:?} {text}", output.status);
+}
+
+/// `program` in a mount namespace of its own, after `script`; `None` where the system does not let this process make one.
+fn in_a_mount_namespace(script: &str, program: &Path) -> Option<Command> {
     let may = Command::new("unshare").args(["--mount", "true"]).status().is_ok_and(|status| status.success());
     if !may {
         eprintln!("skipped: no mount namespaces here");
         return None;
     }
     let mut command = Command::new("unshare");
+    command.args(["--mount", "sh", "-c", script]).arg(program);
+    Some(command)
+}
+
+/// A daemon whose /dev/shm is a small file system of its own, as in a container; `None` where the system does not let
+/// this process make one.
+fn serve_in_small_memory(bytes: usize, arguments: &[&str]) -> Option<Command> {
     let script = format!("mount -t tmpfs -o size={bytes} tmpfs /dev/shm && exec \"$0\" \"$@\"");
-    command.args(["--mount", "sh", "-c", &script, env!("CARGO_BIN_EXE_clearance"), "serve"]);
+    let mut command = in_a_mount_namespace(&script, Path::new(env!("CARGO_BIN_EXE_clearance")))?;
+    command.arg("serve");
     command.args(["--grpc-address", "127.0.0.1:0"]).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
     Some(command)
 }

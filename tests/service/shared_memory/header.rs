@@ -145,7 +145,10 @@ fn a_c_compiler_finds_every_field_where_the_layout_says() {
     writeln!(wanted, "{ABI_HASH:016x}").unwrap();
     std::fs::write(&source, text).unwrap();
     let flags = ["-std=c11", "-Wall", "-Wextra", "-Werror", "-o"];
-    let compiled = Command::new("cc").args(flags).arg(&program).arg(&source).output().unwrap();
+    // Of its own umask: iceoryx2 changes that of this process for a moment whenever another test opens a listener.
+    let mut compiler = Command::new("sh");
+    compiler.args(["-c", "umask 022 && exec cc \"$@\"", "cc"]).args(flags).arg(&program).arg(&source);
+    let compiled = compiler.output().unwrap();
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let told = Command::new(&program).output().unwrap();
     assert_eq!(String::from_utf8(told.stdout).unwrap(), wanted);

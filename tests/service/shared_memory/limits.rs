@@ -23,7 +23,7 @@ async fn what_is_not_there_is_named() {
     let refused = refusal(ask(&mut client, Ask::States(&question, 2), &Options::default()));
     assert!(refused.reason == "NOT_FOUND" && refused.message.contains("scene \"cell\""), "{refused:?}");
     let missing = tempfile::tempdir().unwrap();
-    let error = connect("test-nobody", missing.path()).unwrap_err();
+    let error = connect(&unused_name(), missing.path()).unwrap_err();
     assert!(matches!(error, ClientError::NoDaemon { .. }), "{error}");
 }
 
@@ -85,20 +85,20 @@ async fn a_longer_message_than_allowed_is_refused_by_the_daemon_too() {
     use iceoryx2::prelude::{FileName, NodeBuilder, Path, SemanticString, ServiceName, SignalHandlingMode, ipc};
     let place = Place::with_crane(small()).await;
     let mut config = iceoryx2::config::Config::default();
-    config.global.prefix = FileName::new(format!("{}.", place.name).as_bytes()).unwrap();
+    config.global.prefix = FileName::new(format!("{}.", &*place.name).as_bytes()).unwrap();
     config.global.set_root_path(&Path::new(place.root().to_str().unwrap().as_bytes()).unwrap());
     let builder = NodeBuilder::new().config(&config).signal_handling_mode(SignalHandlingMode::Disabled);
     let node = builder.create::<ipc::Service>().unwrap();
-    let open = |part: &str| node.service_builder(&ServiceName::new(&format!("{}/{part}", place.name)).unwrap());
-    let questions = open("questions").request_response::<[u8], [u8]>().open().unwrap();
+    let open = |part: &str| node.service_builder(&ServiceName::new(&format!("{}/{part}", &*place.name)).unwrap());
+    let questions = open("questions").request_response::<[[u8; 64]], [[u8; 64]]>().open().unwrap();
     let asked = open("asked").event().open().unwrap().notifier_builder().create().unwrap();
-    let client = questions.client_builder().initial_max_slice_len(3 << 20).create().unwrap();
-    let pending = client.loan_slice_uninit(2 << 20).unwrap().write_from_slice(&vec![0; 2 << 20]).send().unwrap();
+    let client = questions.client_builder().initial_max_slice_len(3 << 14).create().unwrap();
+    let pending = client.loan_slice_uninit(2 << 14).unwrap().write_from_slice(&vec![[0; 64]; 2 << 14]).send().unwrap();
     asked.notify().unwrap();
     let end = std::time::Instant::now() + Duration::from_secs(60);
     let answer = loop {
         match pending.receive().unwrap() {
-            Some(response) => break response.payload().to_vec(),
+            Some(response) => break response.payload().as_flattened().to_vec(),
             None => assert!(std::time::Instant::now() < end, "no answer"),
         }
         std::thread::sleep(Duration::from_millis(1));
@@ -127,5 +127,5 @@ async fn a_draining_daemon_says_so_and_then_is_gone() {
 async fn the_door_is_listed() {
     let place = Place::open(small()).await;
     let doors = place.daemon.service.doors();
-    assert!(doors.iter().any(|door| door.kind == "shared-memory" && door.address == place.name), "{doors:?}");
+    assert!(doors.iter().any(|door| door.kind == "shared-memory" && door.address == *place.name), "{doors:?}");
 }

@@ -1,5 +1,6 @@
 //! A daemon with both doors, whose shared memory has a name and a folder of its own.
 
+use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,14 +24,35 @@ pub struct Place {
     pub daemon: RunningDaemon,
     pub inside: InProcess,
     pub queries: QueriesClient<Channel>,
-    pub name: String,
+    pub name: Name,
     pub root: TempDir,
 }
 
 /// A name that no other test has, on this machine.
-pub fn unused_name() -> String {
+pub fn unused_name() -> Name {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
-    format!("test-{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed))
+    Name(format!("test-{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed)))
+}
+
+/// A door's name. Whatever is left of the door in /dev/shm goes with it: nobody opens the name again who would clean up.
+pub struct Name(String);
+
+impl Deref for Name {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.0
+    }
+}
+
+impl Drop for Name {
+    fn drop(&mut self) {
+        let prefix = format!("{}.", self.0);
+        let files = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+        for file in files.filter(|file| file.file_name().to_string_lossy().starts_with(&prefix)) {
+            std::fs::remove_file(file.path()).unwrap_or_default();
+        }
+    }
 }
 
 /// Little memory, so that many tests can run beside one another.
@@ -46,7 +68,7 @@ pub fn small() -> Limits {
 impl Place {
     pub async fn open(limits: Limits) -> Self {
         let (name, root) = (unused_name(), tempfile::tempdir().unwrap());
-        let door = Config { name: name.clone(), root: root.path().to_owned(), spin: Duration::ZERO };
+        let door = Config { name: name.to_string(), root: root.path().to_owned(), spin: Duration::ZERO };
         let mut config = config(limits);
         config.shared_memory = SharedMemory::On(door);
         let daemon = watched("the start of a daemon", RunningDaemon::start_with(&config)).await;
