@@ -85,14 +85,14 @@ impl Attendant {
         loop {
             let draining = self.draining.load(Ordering::Acquire);
             let mut any = false;
-            while let Some(waiting) = self.next()? {
+            while let Some(waiting) = self.next() {
                 any = true;
                 self.take(waiting);
             }
             if draining && self.desk.handed_over.load(Ordering::Acquire) == 0 {
                 return Ok(());
             }
-            if any && self.comes_soon()? {
+            if any && self.comes_soon() {
                 continue;
             }
             let look = if draining { LOOK_DRAINING } else { LOOK };
@@ -104,24 +104,24 @@ impl Attendant {
         }
     }
 
-    fn next(&self) -> Result<Option<Waiting>, String> {
+    fn next(&self) -> Option<Waiting> {
         // A broken connection is its client's misfortune, not the door's.
-        Ok(self.ports.server.receive().unwrap_or_else(|error| {
+        self.ports.server.receive().unwrap_or_else(|error| {
             tracing::warn!("a connection of shared memory cannot be read: {error}");
             None
-        }))
+        })
     }
 
     /// Looks for the next request for a short time, which is quicker than sleeping and being woken.
-    fn comes_soon(&self) -> Result<bool, String> {
+    fn comes_soon(&self) -> bool {
         let end = Instant::now() + self.spin;
         while Instant::now() < end {
-            if self.ports.server.has_requests().map_err(told)? {
-                return Ok(true);
+            if self.ports.server.has_requests().unwrap_or(false) {
+                return true;
             }
             std::hint::spin_loop();
         }
-        Ok(false)
+        false
     }
 
     fn take(&self, waiting: Waiting) {

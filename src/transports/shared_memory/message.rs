@@ -269,3 +269,138 @@ fn pose_row(pose: Pose) -> [f64; 7] {
     let (t, q) = (pose.translation(), pose.rotation());
     [t.x, t.y, t.z, q.w, q.x, q.y, q.z]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Shape;
+    use crate::limits::Limits;
+    use crate::query::{CastMode, Find, Mode, Subject, Wants};
+    use crate::scene::{BodyId, Epoch, Revision};
+    use crate::service::RevisionRule;
+    use crate::transports::shared_memory::request::{Question, Request, decode};
+    use crate::transports::shared_memory::subjects::Asked;
+
+    fn context() -> Context {
+        Context {
+            wants: Wants::ALL,
+            margin: 0.25,
+            cut_off: Some(2.0),
+            filter: Filter {
+                groups: vec!["tools".to_owned(), "walls".to_owned()],
+                ignore: vec![BodyId(7), BodyId(9)],
+                disregard_allowed_collisions: true,
+                layers: Some(3),
+                mask: None,
+            },
+            max_pairs: 5,
+            ..Context::default()
+        }
+    }
+
+    fn states() -> CheckStates {
+        let positions = vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+        CheckStates { robot: "arm".to_owned(), positions, mode: Mode::StopAtFirst, context: context() }
+    }
+
+    fn motions(motions: Motions) -> CheckMotions {
+        CheckMotions {
+            robot: "arm".to_owned(),
+            positions: vec![0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8],
+            motions,
+            mode: Mode::All,
+            find: Find::AnyContact,
+            resolution: 0.01,
+            max_states: 99,
+            context: context(),
+        }
+    }
+
+    fn rays() -> CastRays {
+        CastRays {
+            origins: vec![0.0; 6],
+            directions: vec![1.0; 6],
+            lengths: vec![4.0],
+            mode: CastMode::Any,
+            context: context(),
+        }
+    }
+
+    fn subjects() -> Vec<PlainSubject> {
+        vec![
+            PlainSubject::All,
+            PlainSubject::Body(4),
+            PlainSubject::Shape(PlainShape::capsule(0.1, 0.2).swept(0.05), Pose::identity()),
+            PlainSubject::ChangedSince(3),
+            PlainSubject::ShapeOfBody(5, Pose::identity()),
+        ]
+    }
+
+    fn written(ask: Ask<'_>) -> Vec<u8> {
+        let revision = RevisionRule { epoch: Some(Epoch(8)), rule: Rule::AtLeast(Revision(6)) };
+        let target = Target { scene: "cell".to_owned(), revision };
+        let (timeout, time_budget) = (Some(Duration::from_millis(20)), Some(Duration::from_millis(10)));
+        let (nonce, client) = ([1; 16], [2; 16]);
+        request_message(&Envelope { target: &target, timeout, time_budget, wants_sides: true, nonce, client }, ask)
+    }
+
+    fn read(message: &[u8]) -> Request {
+        decode(message, &Limits::default()).unwrap()
+    }
+
+    #[test]
+    fn the_daemon_reads_what_the_client_asks() {
+        let request = read(&written(Ask::States(&states(), 2)));
+        assert_eq!((request.items, request.wants_sides), (3, true));
+        assert_eq!((request.target.scene.as_str(), request.target.revision.epoch), ("cell", Some(Epoch(8))));
+        assert_eq!(request.target.revision.rule, Rule::AtLeast(Revision(6)));
+        assert_eq!(request.patience.timeout, Some(Duration::from_millis(20)));
+        assert_eq!(request.patience.time_budget, Some(Duration::from_millis(10)));
+        assert!(matches!(request.question, Question::States(question, 2) if question == states()));
+        for (kind, items) in [(Motions::Edges, 2), (Motions::Path, 4)] {
+            let request = read(&written(Ask::Motions(&motions(kind), 2)));
+            assert_eq!(request.items, items);
+            assert!(matches!(request.question, Question::Motions(question, 2) if question == motions(kind)));
+        }
+        let request = read(&written(Ask::Rays(&rays())));
+        assert!(matches!(request.question, Question::Rays(question) if question == rays()));
+    }
+
+    #[test]
+    fn subjects_of_every_kind_are_read() {
+        let Question::Pairs { items, context: read_context, .. } =
+            read(&written(Ask::Collide(&subjects(), &context()))).question
+        else {
+            panic!("another question")
+        };
+        assert_eq!(read_context, context());
+        assert!(matches!(items[0], Asked::Subject(Subject::All)));
+        assert!(matches!(items[1], Asked::Subject(Subject::Body(BodyId(4)))));
+        let capsule = Shape::capsule(0.1, 0.2).and_then(|capsule| capsule.swept(0.05)).unwrap();
+        assert!(matches!(&items[2], Asked::Subject(Subject::Shape { shape, .. })
+            if format!("{shape:?}") == format!("{capsule:?}")));
+        assert!(matches!(items[3], Asked::Subject(Subject::ChangedSince(Revision(3)))));
+        assert!(matches!(items[4], Asked::ShapeOfBody { body: BodyId(5), .. }));
+    }
+
+    /// With `FUZZ_CORPUS` set to a folder, a request of each kind is written there: where fuzzing begins.
+    #[test]
+    fn requests_for_the_fuzzer() {
+        let (edges, path) = (motions(Motions::Edges), motions(Motions::Path));
+        let messages = [
+            written(Ask::States(&states(), 2)),
+            written(Ask::Motions(&edges, 2)),
+            written(Ask::Motions(&path, 2)),
+            written(Ask::Collide(&subjects(), &context())),
+            written(Ask::Distance(&subjects(), &context())),
+            written(Ask::Rays(&rays())),
+        ];
+        assert!(messages.iter().all(|message| message.len() <= 4096), "fuzz/run cuts longer ones");
+        let Ok(folder) = std::env::var("FUZZ_CORPUS") else { return };
+        let folder = std::path::PathBuf::from(folder).join("shared_memory");
+        std::fs::create_dir_all(&folder).unwrap();
+        for (index, message) in messages.iter().enumerate() {
+            std::fs::write(folder.join(index.to_string()), message).unwrap();
+        }
+    }
+}
