@@ -288,7 +288,8 @@ mod tests {
 
     #[test]
     fn every_fault_of_an_entry_is_told_with_its_field() {
-        let cases: [(&str, fn(&mut SectionEntry)); 12] = [
+        type Change = fn(&mut SectionEntry);
+        let cases: [(&str, Change); 12] = [
             ("kind", |e| e.kind = 9999),
             ("kind", |e| (e.kind, e.stride, e.bytes) = (kind::SCENE, 1, 4)),
             ("reserved", |e| e.reserved = 1),

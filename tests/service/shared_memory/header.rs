@@ -1,5 +1,5 @@
-//! `clients/c/clearance_shared_memory.h` and `docs/wire.md` say the same as the layout: the header is generated from it and
-//! compared with the committed file, and a C compiler confirms every offset.
+//! The C header, the Python client's table and `docs/wire.md` say the same as the layout: they are made from it and compared
+//! with the committed files, and a C compiler confirms every offset.
 
 use std::fmt::Write;
 use std::process::Command;
@@ -9,6 +9,7 @@ use clearance::transports::shared_memory::layout::{
 };
 
 const HEADER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/clients/c/clearance_shared_memory.h");
+const PYTHON: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/clients/python/src/clearance/shared_memory_layout.py");
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/wire.md");
 
 /// Every header: its name in C, its size, its fields.
@@ -71,6 +72,39 @@ fn c_header() -> String {
     text
 }
 
+/// The module that the Python client reads offsets from.
+fn python_layout() -> String {
+    let mut text = String::from(
+        "\"\"\"Where each field of a shared-memory message stands.\n\n\
+         Made from src/transports/shared_memory/layout.rs by `cargo test --test service header`; do not edit.\n\"\"\"\n\n",
+    );
+    let magic: String = MAGIC.iter().map(|byte| format!("{byte:02x}")).collect();
+    writeln!(text, "MAGIC = bytes.fromhex(\"{magic}\")\nABI_HASH = {ABI_HASH:#018x}\nVERSION = {VERSION}").unwrap();
+    writeln!(text, "ALIGNMENT = {ALIGNMENT}\nMOST_SECTIONS = {MOST_SECTIONS}\n").unwrap();
+    text.push_str("# Name: (size, {field: (numpy type, count, offset)}).\nHEADERS = {\n");
+    for (name, bytes, fields) in HEADERS {
+        writeln!(text, "    \"{name}\": (\n        {bytes},\n        {{").unwrap();
+        for field in fields {
+            let numpy = match field.c_type {
+                "uint8_t" => "u1",
+                "uint32_t" => "<u4",
+                "uint64_t" => "<u8",
+                _ => "<f8",
+            };
+            writeln!(text, "            \"{}\": (\"{numpy}\", {}, {}),", field.name, field.count, field.offset)
+                .unwrap();
+        }
+        text.push_str("        },\n    ),\n");
+    }
+    text.push_str("}\n\n# Name: (kind, bytes of a number, numbers of a row).\nCOLUMNS = {\n");
+    for column in kind::COLUMNS {
+        let name = column.name.to_ascii_lowercase();
+        writeln!(text, "    \"{name}\": ({}, {}, {}),", column.kind, column.element, column.per_row).unwrap();
+    }
+    text.push_str("}\n");
+    text
+}
+
 /// The tables of the page: one a header, and one of the columns.
 fn page_tables() -> String {
     let mut text = String::new();
@@ -105,6 +139,11 @@ fn compare(path: &str, wanted: &str) {
 #[test]
 fn the_committed_header_is_the_layouts() {
     compare(HEADER, &c_header());
+}
+
+#[test]
+fn the_committed_python_module_is_the_layouts() {
+    compare(PYTHON, &python_layout());
 }
 
 #[test]

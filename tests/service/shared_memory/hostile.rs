@@ -10,6 +10,9 @@ use clearance::transports::shared_memory::{
 use super::place::*;
 use crate::support::messages::SCENE;
 
+type HeaderChange = fn(&mut RequestHeader);
+type EntryChange = fn(&mut SectionEntry);
+
 const NONCE: [u8; 16] = [9; 16];
 
 fn written(client: &Client, ask: Ask<'_>) -> Vec<u8> {
@@ -51,7 +54,7 @@ async fn what_cannot_be_is_refused_with_its_field() {
     let good = written(&client, Ask::States(&states, 2));
     assert_eq!(send(&mut client, &good).unwrap().items(), 2, "the message that the others are made from");
 
-    let header: [(&str, fn(&mut RequestHeader)); 22] = [
+    let header: [(&str, HeaderChange); 22] = [
         ("header.magic", |h| h.magic[3] = 0),
         ("header.version", |h| h.version = 2),
         ("header.abi_hash", |h| h.abi_hash ^= 1),
@@ -83,7 +86,7 @@ async fn what_cannot_be_is_refused_with_its_field() {
     let refused = refusal(send(&mut client, &change_header(&good, |h| h.items = u32::MAX)));
     assert_eq!((refused.reason.as_str(), refused.code), ("LIMIT_EXCEEDED", 8), "{refused:?}");
 
-    let entries: [(u32, &str, fn(&mut SectionEntry)); 12] = [
+    let entries: [(u32, &str, EntryChange); 12] = [
         (kind::POSITIONS, "offset", |e| e.offset += 8),
         (kind::POSITIONS, "offset", |e| e.offset = u64::MAX - 63),
         (kind::POSITIONS, "offset", |e| e.offset = 0),
