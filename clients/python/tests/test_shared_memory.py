@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -131,9 +132,16 @@ class SharedMemoryTest(unittest.TestCase):
         self.assertEqual(answer.verdicts.tolist(), [6, 1])
         self.assertIn("position 1", answer.problems[0])
 
+    def _state(self) -> str:
+        with open(f"/proc/{self.process.pid}/stat", encoding="utf-8") as file:
+            return file.read().rpartition(") ")[2][0]
+
     def test_a_stopped_daemon_costs_the_timeout(self) -> None:
         os.kill(self.process.pid, signal.SIGSTOP)
         try:
+            # The signal is sent, and comes a moment later.
+            while self._state() != "T":
+                time.sleep(0.001)
             with self.assertRaises(clearance.DeadlineExceeded):
                 self.door.check_states("cell", "arm", [[0.0, 0.0]], timeout=0.2)
         finally:

@@ -152,6 +152,9 @@ async fn a_stopped_daemon_costs_no_more_than_the_timeout_and_its_late_answer_is_
     let mut client = connect(&name, root.path()).unwrap();
     let (subjects, context) = ([clearance::transports::shared_memory::PlainSubject::All; 2], Context::default());
     signal("-STOP");
+    let stat = format!("/proc/{}/stat", daemon.0.id());
+    // The signal is sent, and comes a moment later.
+    eventually("the stop", || std::fs::read_to_string(&stat).unwrap().contains(") T ")).await;
     let short = Options { timeout: Duration::from_millis(300), ..Options::default() };
     let outcome = ask(&mut client, Ask::Collide(&subjects, &context), &short);
     assert!(matches!(outcome, Err(ClientError::Timeout(_))), "{outcome:?}");
