@@ -152,3 +152,40 @@ impl Reply {
         items.into_iter().map(|item| item as usize).zip(texts.into_iter().map(str::to_owned)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::service::ServiceError;
+    use crate::transports::shared_memory::answer::error_message;
+
+    const OWN: Nonce = [1; 16];
+
+    #[test]
+    fn an_answer_to_another_is_told_from_ones_own() {
+        let theirs = error_message([2; 16], &ServiceError::DeadlineExceeded);
+        assert_eq!(decode(theirs, OWN), Ok(Came::Foreign));
+        let Ok(Came::Refusal(refusal)) = decode(error_message(OWN, &ServiceError::DeadlineExceeded), OWN) else {
+            panic!("no refusal")
+        };
+        assert_eq!((refusal.code, refusal.reason.as_str()), (4, "DEADLINE_EXCEEDED"));
+    }
+
+    #[test]
+    fn what_is_no_answer_is_refused_with_its_field() {
+        let good = error_message(OWN, &ServiceError::invalid("positions", "x".repeat(9000)));
+        let changed = |place: usize| {
+            let mut bytes = good.clone();
+            bytes[place] ^= 1;
+            decode(bytes, OWN).unwrap_err().field
+        };
+        assert_eq!(decode(good[..64].to_vec(), OWN).unwrap_err().field, "header.magic");
+        assert_eq!(
+            ["header.magic", "header.abi_hash", "header.total_bytes"],
+            [0, 8, 24].map(changed).each_ref().map(String::as_str)
+        );
+        assert!(changed(ResponseHeader::BYTES + 9).starts_with("sections[0]."));
+        let Ok(Came::Refusal(refusal)) = decode(good, OWN) else { panic!("no refusal") };
+        assert!(refusal.field == "positions" && refusal.message.len() < 5000, "a long text is cut");
+    }
+}

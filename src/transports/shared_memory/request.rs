@@ -8,7 +8,6 @@ use super::layout::{ABI_HASH, MAGIC, RequestHeader, VERSION, kind};
 use super::sections::{Malformed, Sections, name_of};
 use super::subjects::{self, Asked};
 use crate::limits::{LimitExceeded, Limits};
-use crate::narrow_phase::Accuracy;
 use crate::query::{CastRays, CheckMotions, CheckStates, Context, Filter, Mode, Motions};
 use crate::scene::{BodyId, Epoch, Revision};
 use crate::service::{Patience, RevisionRule, Rule, ServiceError, Target};
@@ -202,13 +201,16 @@ impl Decoder<'_> {
     fn context(&self) -> Result<Context, ServiceError> {
         let header = self.header;
         let defaults = Context::default();
-        let accuracy = Accuracy { absolute: header.accuracy_absolute, relative: header.accuracy_relative };
+        let mut accuracy = defaults.accuracy;
+        if self.has(flag::ACCURACY) {
+            (accuracy.absolute, accuracy.relative) = (header.accuracy_absolute, header.accuracy_relative);
+        }
         let max_pairs = header.max_pairs as usize;
         Ok(Context {
             wants: codes::wants(header.wants).ok_or_else(|| unknown("context.wants", header.wants))?,
             margin: header.margin,
             cut_off: self.has(flag::CUT_OFF).then_some(header.cut_off),
-            accuracy: if self.has(flag::ACCURACY) { accuracy } else { defaults.accuracy },
+            accuracy,
             solver: codes::solver(header.solver).ok_or_else(|| unknown("context.solver", header.solver))?,
             filter: self.filter()?,
             max_pairs: if self.has(flag::MAX_PAIRS) { max_pairs } else { defaults.max_pairs },
