@@ -132,15 +132,13 @@ impl Doors {
     }
 
     fn list(&self) -> Vec<Door> {
-        [
+        let doors: Vec<Option<Door>> = vec![
             #[cfg(feature = "grpc")]
             Some(self.grpc.door()),
             #[cfg(feature = "shared-memory")]
             self.shared_memory.as_ref().map(shared_memory::Listening::door),
-        ]
-        .into_iter()
-        .flatten()
-        .collect()
+        ];
+        doors.into_iter().flatten().collect()
     }
 
     /// Serves every door until it is told to drain, then until what is under way is answered.
