@@ -91,6 +91,12 @@ pub struct Limits {
     pub max_client_items_per_second: usize,
     /// Bytes of messages from and to one client in a second, on the mean; 0: as many as it likes.
     pub max_client_bytes_per_second: usize,
+    /// Clients of the shared-memory door.
+    pub max_shared_memory_clients: usize,
+    /// Size of one request through shared memory, bytes; each client keeps room for three.
+    pub max_shared_memory_request_bytes: usize,
+    /// Size of one answer through shared memory, bytes; the daemon keeps room for two for each client.
+    pub max_shared_memory_response_bytes: usize,
 }
 
 impl Default for Limits {
@@ -137,6 +143,9 @@ impl Default for Limits {
             max_client_calls: 512,
             max_client_items_per_second: 0,
             max_client_bytes_per_second: 0,
+            max_shared_memory_clients: 8,
+            max_shared_memory_request_bytes: 4 << 20,
+            max_shared_memory_response_bytes: 3 << 20,
         }
     }
 }
@@ -205,6 +214,9 @@ impl Limits {
             max_client_calls,
             max_client_items_per_second,
             max_client_bytes_per_second,
+            max_shared_memory_clients,
+            max_shared_memory_request_bytes,
+            max_shared_memory_response_bytes,
         } = *self;
         let row = |name, value: usize, unit, what_happens| Limit { name, unit, value: value as u64, what_happens };
         vec![
@@ -283,6 +295,24 @@ impl Limits {
                 max_client_bytes_per_second,
                 "bytes from and to one client per second; 0: any number",
                 EXHAUSTED_FOR_NOW,
+            ),
+            row(
+                "max_shared_memory_clients",
+                max_shared_memory_clients,
+                "clients of the shared-memory door",
+                "connecting fails and names the number",
+            ),
+            row(
+                "max_shared_memory_request_bytes",
+                max_shared_memory_request_bytes,
+                "bytes per request through shared memory",
+                "the client refuses the request and names both numbers",
+            ),
+            row(
+                "max_shared_memory_response_bytes",
+                max_shared_memory_response_bytes,
+                "bytes per answer through shared memory",
+                EXHAUSTED,
             ),
         ]
     }

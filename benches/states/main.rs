@@ -17,7 +17,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clearance::app::{Daemon, GrpcSettings, Settings};
+use clearance::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings};
 use clearance::geometry::Pose;
 use clearance::query::{CheckStates, Context, Mode, Prepared, Verdict, Wants};
 use clearance::robot::{LinkOptions, MeshUse, ModelOptions, mesh_files};
@@ -154,7 +154,10 @@ impl Grpc {
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().expect("threads are to be had");
         let client = runtime.block_on(async {
             let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
-            let config = Settings { threads: Some(1), grpc, ..Settings::default() }.resolve().expect("defaults hold");
+            let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
+            let config = Settings { threads: Some(1), grpc, shared_memory, ..Settings::default() }
+                .resolve()
+                .expect("defaults hold");
             let daemon = Daemon::build(&config).await.expect("a port is free");
             let address = daemon.doors()[0].address.to_string();
             tokio::spawn(daemon.run(std::future::pending()));

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
-use super::GrpcSettings;
+#[cfg(feature = "shared-memory")]
+use super::SharedMemory;
+use super::{GrpcSettings, SharedMemorySettings};
 use crate::limits::Limits;
 use crate::service;
 
@@ -19,6 +21,9 @@ pub struct Config {
     /// The gRPC door.
     #[cfg(feature = "grpc")]
     pub grpc: crate::transports::grpc::Config,
+    /// The shared-memory door.
+    #[cfg(feature = "shared-memory")]
+    pub shared_memory: SharedMemory,
     /// How long requests under way may take to finish once the daemon is told to end.
     pub drain: Duration,
     /// Which log lines are written, as a filter of `tracing`.
@@ -29,6 +34,12 @@ pub struct Config {
 pub mod defaults {
     /// Where the gRPC door is.
     pub const GRPC_ADDRESS: &str = "127.0.0.1:50551";
+    /// What the shared-memory door is called.
+    pub const SHARED_MEMORY_NAME: &str = "clearance";
+    /// The folder of the shared-memory door.
+    pub const SHARED_MEMORY_ROOT: &str = "/tmp/clearance";
+    /// Microseconds that the shared-memory door looks for the next request before it sleeps.
+    pub const SHARED_MEMORY_SPIN: u64 = 20;
     /// Seconds that requests under way may take to finish.
     pub const DRAIN_SECONDS: u64 = 10;
     /// Which log lines are written.
@@ -47,6 +58,8 @@ pub struct Settings {
     pub log: Option<String>,
     /// The gRPC door.
     pub grpc: GrpcSettings,
+    /// The shared-memory door.
+    pub shared_memory: SharedMemorySettings,
     /// Caps by their names in [`Limits`].
     pub limits: toml::Table,
 }
@@ -114,6 +127,7 @@ impl Settings {
             drain_seconds: self.drain_seconds.or(weaker.drain_seconds),
             log: self.log.or(weaker.log),
             grpc: self.grpc.over(weaker.grpc),
+            shared_memory: self.shared_memory.over(weaker.shared_memory),
             limits,
         }
     }
@@ -129,6 +143,8 @@ impl Settings {
             service: service::Config { threads: self.threads.unwrap_or(0), limits },
             #[cfg(feature = "grpc")]
             grpc: self.grpc.resolve()?,
+            #[cfg(feature = "shared-memory")]
+            shared_memory: self.shared_memory.resolve(),
             drain: Duration::from_secs(self.drain_seconds.unwrap_or(defaults::DRAIN_SECONDS)),
             log: self.log.unwrap_or_else(|| defaults::LOG.to_owned()),
         })

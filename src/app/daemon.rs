@@ -3,13 +3,17 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::oneshot;
-use tokio::task::JoinError;
+use tokio::sync::watch;
+use tokio::task::{JoinError, JoinSet};
 
 use super::Config;
+#[cfg(feature = "shared-memory")]
+use super::SharedMemory;
 use crate::service::{Door, Service};
 #[cfg(feature = "grpc")]
 use crate::transports::grpc;
+#[cfg(feature = "shared-memory")]
+use crate::transports::shared_memory;
 
 /// A daemon whose doors are open and not served yet.
 #[derive(Debug)]
@@ -24,6 +28,8 @@ pub struct Daemon {
 struct Doors {
     #[cfg(feature = "grpc")]
     grpc: grpc::Listening,
+    #[cfg(feature = "shared-memory")]
+    shared_memory: Option<shared_memory::Listening>,
 }
 
 /// Why a daemon did not begin.
@@ -36,6 +42,10 @@ pub enum StartError {
     #[cfg(feature = "grpc")]
     #[error(transparent)]
     Grpc(#[from] grpc::BindError),
+    /// A door cannot be opened.
+    #[cfg(feature = "shared-memory")]
+    #[error(transparent)]
+    SharedMemory(#[from] shared_memory::BindError),
 }
 
 /// Why a daemon ended by itself.
@@ -89,9 +99,7 @@ impl Daemon {
     /// # Errors
     /// A door closed by itself.
     pub async fn run(self, stop: impl Future<Output = ()>) -> Result<Drained, RunError> {
-        let (drain, told_to_drain) = oneshot::channel::<()>();
-        // A sender that is gone means the same as one that speaks.
-        let told_to_drain = async { told_to_drain.await.unwrap_or_default() };
+        let (drain, told_to_drain) = watch::channel(false);
         let mut serving = tokio::spawn(self.doors.serve(Arc::clone(&self.service), told_to_drain));
         tokio::select! {
             ended = &mut serving => return Err(closed(ended)),
@@ -99,7 +107,7 @@ impl Daemon {
         }
         tracing::info!(seconds = self.drain.as_secs(), "draining");
         self.service.begin_drain();
-        drop(drain);
+        drain.send_replace(true);
         match tokio::time::timeout(self.drain, &mut serving).await {
             Ok(Ok(Ok(()))) => Ok(Drained::Clean),
             Ok(ended) => Err(closed(ended)),
@@ -112,54 +120,93 @@ impl Daemon {
 }
 
 impl Doors {
-    #[cfg(feature = "grpc")]
-    async fn open(config: &Config) -> Result<Self, StartError> {
-        Ok(Self { grpc: config.grpc.bind().await? })
+    async fn open(
+        #[allow(unused_variables, reason = "there may be no door")] config: &Config,
+    ) -> Result<Self, StartError> {
+        Ok(Self {
+            #[cfg(feature = "grpc")]
+            grpc: config.grpc.bind().await?,
+            #[cfg(feature = "shared-memory")]
+            shared_memory: shared_memory_door(config).await?,
+        })
     }
 
-    #[cfg(feature = "grpc")]
     fn list(&self) -> Vec<Door> {
-        vec![self.grpc.door()]
+        let doors: Vec<Option<Door>> = vec![
+            #[cfg(feature = "grpc")]
+            Some(self.grpc.door()),
+            #[cfg(feature = "shared-memory")]
+            self.shared_memory.as_ref().map(shared_memory::Listening::door),
+        ];
+        doors.into_iter().flatten().collect()
     }
 
-    /// Serves every door until `drain` comes, then until what is under way is answered.
-    #[cfg(feature = "grpc")]
+    /// Serves every door until it is told to drain, then until what is under way is answered.
     async fn serve(
         self,
-        service: Arc<Service>,
-        drain: impl Future<Output = ()> + Send + 'static,
+        #[allow(unused_variables, reason = "there may be no door")] service: Arc<Service>,
+        mut told_to_drain: watch::Receiver<bool>,
     ) -> Result<(), RunError> {
-        let served = self.grpc.serve(service, drain).await;
-        served.map_err(|error| RunError::Closed { door: "grpc", problem: error.to_string() })
+        let mut serving: JoinSet<Result<(), RunError>> = JoinSet::new();
+        #[cfg(feature = "grpc")]
+        {
+            let served = self.grpc.serve(Arc::clone(&service), drained(told_to_drain.clone()));
+            serving.spawn(async { served.await.map_err(|error| RunError::of("grpc", &error)) });
+        }
+        #[cfg(feature = "shared-memory")]
+        if let Some(shared_memory) = self.shared_memory {
+            let served = shared_memory.serve(Arc::clone(&service), drained(told_to_drain.clone()));
+            serving.spawn(async { served.await.map_err(|error| RunError::of("shared-memory", &error)) });
+        }
+        if serving.is_empty() {
+            drained(told_to_drain.clone()).await;
+        }
+        while let Some(ended) = serving.join_next().await {
+            ended.map_err(|error| RunError::of("last", &error))??;
+            if !*told_to_drain.borrow_and_update() {
+                return Err(RunError::of("first", &"no reason given"));
+            }
+        }
+        Ok(())
     }
 }
 
-/// A program built without doors: nobody can ask, and nothing can go wrong.
-#[cfg(not(feature = "grpc"))]
-impl Doors {
-    async fn open(_config: &Config) -> Result<Self, StartError> {
-        Ok(Self {})
+/// The shared-memory door, if there is to be one. Opening it takes memory, which may take its time.
+#[cfg(feature = "shared-memory")]
+async fn shared_memory_door(config: &Config) -> Result<Option<shared_memory::Listening>, StartError> {
+    let (door, asked_for) = match &config.shared_memory {
+        SharedMemory::Off => return Ok(None),
+        SharedMemory::IfPossible(door) => (door.clone(), false),
+        SharedMemory::On(door) => (door.clone(), true),
+    };
+    let limits = config.service.limits.clone();
+    let opened = tokio::task::spawn_blocking(move || door.bind(&limits)).await;
+    match opened.map_err(|error| StartError::Threads(error.to_string()))? {
+        Ok(door) => Ok(Some(door)),
+        Err(error) if asked_for => Err(error.into()),
+        Err(error) => {
+            tracing::warn!("there is no shared-memory door: {error}");
+            Ok(None)
+        }
     }
+}
 
-    fn list(&self) -> Vec<Door> {
-        Vec::new()
-    }
+/// Comes when it is time to drain. A sender that is gone means the same as one that speaks.
+async fn drained(mut told: watch::Receiver<bool>) {
+    let _ = told.wait_for(|told| *told).await;
+}
 
-    async fn serve(
-        self,
-        _service: Arc<Service>,
-        drain: impl Future<Output = ()> + Send + 'static,
-    ) -> Result<(), RunError> {
-        drain.await;
-        Ok(())
+impl RunError {
+    fn of(door: &'static str, problem: &dyn std::fmt::Display) -> Self {
+        Self::Closed { door, problem: problem.to_string() }
     }
 }
 
 /// What to say of doors that closed before they were told to.
 fn closed(ended: Result<Result<(), RunError>, JoinError>) -> RunError {
     match ended {
-        Ok(Ok(())) => RunError::Closed { door: "last", problem: "no reason given".to_owned() },
+        Ok(Ok(())) => RunError::of("last", &"no reason given"),
         Ok(Err(error)) => error,
-        Err(error) => RunError::Closed { door: "last", problem: error.to_string() },
+        Err(error) => RunError::of("last", &error),
     }
 }

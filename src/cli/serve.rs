@@ -4,10 +4,15 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use super::exit_code::Exit;
-use crate::app::{Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, StartError, defaults};
-use crate::app::{TlsSettings, log_to_stderr, stop_signal};
+use crate::app::{
+    Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, TlsSettings,
+    defaults,
+};
+use crate::app::{log_to_stderr, stop_signal};
 #[cfg(feature = "grpc")]
-use crate::transports::grpc::BindError;
+use crate::transports::grpc;
+#[cfg(feature = "shared-memory")]
+use crate::transports::shared_memory;
 
 /// Flags of `clearance serve`. Each may also stand in the environment, or in the file.
 #[derive(clap::Args, Clone, Debug)]
@@ -19,6 +24,17 @@ pub struct Serve {
     #[arg(long, value_name = "HOST:PORT|unix:PATH", env = "CLEARANCE_GRPC_ADDRESS",
         help = format!("Where gRPC listens; port 0 takes any free one [default: {}]", defaults::GRPC_ADDRESS))]
     pub grpc_address: Option<String>,
+    /// What the shared-memory door is called; with a name given, a daemon that cannot open it does not start.
+    #[arg(long, value_name = "NAME", env = "CLEARANCE_SHARED_MEMORY_NAME",
+        help = format!("What the shared-memory door is called; no other door of the machine may have the name [default: {}]", defaults::SHARED_MEMORY_NAME))]
+    pub shared_memory_name: Option<String>,
+    /// The folder of the shared-memory door.
+    #[arg(long, value_name = "DIR", env = "CLEARANCE_SHARED_MEMORY_ROOT",
+        help = format!("The folder of the shared-memory door [default: {}]", defaults::SHARED_MEMORY_ROOT))]
+    pub shared_memory_root: Option<PathBuf>,
+    /// No shared-memory door.
+    #[arg(long, env = "CLEARANCE_NO_SHARED_MEMORY")]
+    pub no_shared_memory: bool,
     /// Listen beyond loopback although it is not both encrypted and closed to strangers.
     #[arg(long, env = "CLEARANCE_INSECURE")]
     pub insecure: bool,
@@ -82,6 +98,12 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
             },
             ..GrpcSettings::default()
         },
+        shared_memory: SharedMemorySettings {
+            enabled: serve.no_shared_memory.then_some(false),
+            name: serve.shared_memory_name.clone(),
+            root: serve.shared_memory_root.clone(),
+            spin_microseconds: None,
+        },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -113,6 +135,8 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
             let exit = match &error {
                 #[cfg(feature = "grpc")]
                 StartError::Grpc(error) => exit_of_grpc(error),
+                #[cfg(feature = "shared-memory")]
+                StartError::SharedMemory(error) => exit_of_shared_memory(error),
                 StartError::Threads(_) => Exit::Failure,
             };
             return failed(exit, &error);
@@ -130,11 +154,22 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
 
 /// How the process ends when the door cannot be opened.
 #[cfg(feature = "grpc")]
-fn exit_of_grpc(error: &BindError) -> Exit {
+fn exit_of_grpc(error: &grpc::BindError) -> Exit {
+    use grpc::BindError;
     match error {
         BindError::Address { .. } => Exit::Failure,
         BindError::NotLoopback { .. } | BindError::TlsOnUnix { .. } | BindError::Origin(_) => Exit::Usage,
         BindError::Tls(_) | BindError::Token(_) => Exit::Input,
+    }
+}
+
+/// How the process ends when the door cannot be opened.
+#[cfg(feature = "shared-memory")]
+fn exit_of_shared_memory(error: &shared_memory::BindError) -> Exit {
+    use shared_memory::BindError;
+    match error {
+        BindError::Endpoint(_) | BindError::TooSmall { .. } => Exit::Usage,
+        BindError::NoSpace(_) | BindError::Taken { .. } | BindError::System { .. } => Exit::Failure,
     }
 }
 

@@ -116,6 +116,12 @@ impl SceneCell {
         }
     }
 
+    /// The snapshot that fits the rule, if it is there.
+    pub fn find_now(&self, rule: RevisionRule) -> Result<Option<Found>, ServiceError> {
+        self.check_epoch(rule.epoch)?;
+        self.at_hand(rule.rule)
+    }
+
     fn at_hand(&self, rule: Rule) -> Result<Option<Found>, ServiceError> {
         if self.published.is_deleted() { Err(self.not_found()) } else { self.published.find(rule) }
     }

@@ -21,7 +21,7 @@ use super::scene_health::SceneHealth;
 use super::scene_watch::SceneWatch;
 use super::scenes::{SceneSummary, Scenes};
 use super::view::View;
-use super::workers::{Workers, prepare};
+use super::workers::{Workers, caught, prepare};
 use crate::limits::Limits;
 use crate::query::ContactQuestion;
 use crate::scene::{Applied, Epoch, Revision, SceneOptions, Snapshot};
@@ -293,6 +293,29 @@ impl Service {
                 if stop.now() { Err(ServiceError::DeadlineExceeded) } else { question(&view) }
             })
             .await
+    }
+
+    /// Asks a scene on the calling thread, for questions that take less time than to hand them over. `None`: the revision
+    /// is still to come, and [`Service::ask`] waits for it.
+    pub fn ask_here<T>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError>,
+    ) -> Option<Result<T, ServiceError>> {
+        let found = || {
+            self.check_open()?;
+            let permit = self.queries.enter()?;
+            let deadline = self.deadline(patience)?;
+            Ok(self.scenes.get(&target.scene)?.find_now(target.revision)?.map(|found| (permit, deadline, found)))
+        };
+        let (_permit, deadline, found) = match found() {
+            Ok(found) => found?,
+            Err(error) => return Some(Err(error)),
+        };
+        let (stop, _waiting) = Stop::at(deadline);
+        let view = View::on_one_thread(found, stop, &self.limits);
+        Some(caught(|| question(&view)))
     }
 
     /// Watches the contacts of a scene. `question` is told the caps and the snapshot that comes first.

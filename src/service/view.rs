@@ -26,6 +26,8 @@ pub struct View {
     worlds: Worlds,
     stop: Stop,
     limits: Limits,
+    /// Parts may be given to the threads that answer questions.
+    many_threads: bool,
 }
 
 /// Items that one thread takes at a time, at least: fewer cost more in handing over than they gain.
@@ -36,7 +38,25 @@ const PARTS_PER_THREAD: usize = 4;
 impl View {
     pub(super) fn new(found: Found, stop: Stop, limits: &Limits) -> Self {
         let worlds = Worlds::as_is(&found.snapshot);
-        Self { found, worlds, stop, limits: limits.clone() }
+        Self { found, worlds, stop, limits: limits.clone(), many_threads: true }
+    }
+
+    /// A view for a thread that is none of those that answer questions, and answers all by itself.
+    pub(super) fn on_one_thread(found: Found, stop: Stop, limits: &Limits) -> Self {
+        Self { many_threads: false, ..Self::new(found, stop, limits) }
+    }
+
+    /// Does the parts of a batch, in order.
+    fn each<T: Send>(
+        &self,
+        items: usize,
+        smallest_part: usize,
+        run: impl Fn(Range<usize>) -> T + Send + Sync,
+    ) -> Vec<T> {
+        if self.many_threads {
+            return split(items, smallest_part).into_par_iter().map(run).collect();
+        }
+        (items > 0).then(|| run(0..items)).into_iter().collect()
     }
 
     /// The same with overlays: what is asked then is asked as if their edits had been applied.
@@ -62,7 +82,13 @@ impl View {
         // Of several that cannot be, the first is told, whatever thread was first.
         let alternatives = made.into_iter().collect::<Result<_, ServiceError>>()?;
         let worlds = Worlds::new(common, alternatives, overlays.of_item.clone())?;
-        Ok(Self { found: self.found.clone(), worlds, stop: self.stop.clone(), limits: self.limits.clone() })
+        Ok(Self {
+            found: self.found.clone(),
+            worlds,
+            stop: self.stop.clone(),
+            limits: self.limits.clone(),
+            many_threads: self.many_threads,
+        })
     }
 
     /// What is asked, with the overlay of all items.
@@ -163,7 +189,7 @@ impl View {
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
-        let parts: Vec<(Vec<B::Item>, usize)> = split(batch.len(), SMALLEST_PART).into_par_iter().map(run).collect();
+        let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
         if answers.out_of_time && answers.answered == 0 {
             return Err(ServiceError::DeadlineExceeded);
@@ -175,7 +201,7 @@ impl View {
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
-        let parts: Vec<Part> = split(question.len(), question.smallest_part()).into_par_iter().map(run).collect();
+        let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
         let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);
         if answer.out_of_time && nothing {

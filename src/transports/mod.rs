@@ -4,5 +4,7 @@
 pub mod grpc;
 #[cfg(feature = "grpc")]
 pub mod requests;
+#[cfg(feature = "shared-memory")]
+pub mod shared_memory;
 #[cfg(feature = "grpc")]
 pub mod wire;

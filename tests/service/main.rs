@@ -7,6 +7,8 @@ mod connections;
 mod crowds;
 mod histories;
 mod process;
+#[cfg(feature = "shared-memory")]
+mod shared_memory;
 mod streams;
 mod support;
 mod watching;

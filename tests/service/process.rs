@@ -18,7 +18,10 @@ fn serve() -> Command {
 
 fn serve_at(address: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
-    command.args(["serve", "--grpc-address", address]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(["serve", "--grpc-address", address, "--no-shared-memory"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     command
 }
 

@@ -16,7 +16,7 @@ class DaemonTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        command = [PROGRAM, "serve", "--grpc-address", "127.0.0.1:0"]
+        command = [PROGRAM, "serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory"]
         cls.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         line = cls.process.stdout.readline().split()
         if line[:2] != ["listening", "grpc"]:

@@ -13,7 +13,7 @@ use super::super::state_line::{AnswerLine, Names};
 use super::super::words;
 use super::report::{Cast, HEADINGS, row};
 use super::sample;
-use crate::app::{Daemon, GrpcSettings, Settings, stop_signal};
+use crate::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings, stop_signal};
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckStates, Context, ItemAnswer, Mode, Side, Verdict, Wants};
 use crate::robot::{LinkOptions, MeshUse, ModelOptions};
@@ -55,7 +55,9 @@ pub fn run(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
 
 async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
     let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
-    let config = Settings { grpc, ..Settings::default() }.resolve().map_err(Failed::failure)?;
+    // The name of the shared-memory door is one for the whole machine: it stays with the daemon that serves.
+    let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
+    let config = Settings { grpc, shared_memory, ..Settings::default() }.resolve().map_err(Failed::failure)?;
     let daemon = Daemon::build(&config).await.map_err(Failed::failure)?;
     let door = daemon.doors().into_iter().next().ok_or_else(|| Failed::failure("the daemon has no door"))?;
     let address = door.address.to_string();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clearance::app::{Config, Daemon, Drained, GrpcSettings, Settings};
+use clearance::app::{Config, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings};
 use clearance::limits::Limits;
 use clearance::service::Service;
 use tokio::sync::oneshot;
@@ -19,8 +19,10 @@ pub struct RunningDaemon {
 
 pub fn config(limits: Limits) -> Config {
     let address = Some("127.0.0.1:0".to_owned());
-    let settings =
-        Settings { threads: Some(2), grpc: GrpcSettings { address, ..GrpcSettings::default() }, ..Settings::default() };
+    // Tests run beside one another; those of shared memory give it names of their own.
+    let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
+    let grpc = GrpcSettings { address, ..GrpcSettings::default() };
+    let settings = Settings { threads: Some(2), grpc, shared_memory, ..Settings::default() };
     let mut config = settings.resolve().unwrap();
     config.service.limits = limits;
     config

@@ -1,0 +1,236 @@
+//! Who answers at the door? One thread that sleeps until a request comes, answers small ones itself and hands the
+//! others to the threads that answer questions.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use iceoryx2::active_request::ActiveRequest;
+use iceoryx2::port::LoanError;
+use iceoryx2::port::notifier::Notifier;
+use iceoryx2::prelude::CallbackProgression;
+use tokio::runtime::Handle;
+
+use super::answer::error_message;
+use super::door::Ports;
+use super::endpoint::{Ipc, Line, lines, listener_name, sleep, told};
+use super::layout::RequestHeader;
+use super::questions::answered;
+use super::request::{ClientId, Nonce, Question, Request, decode};
+use super::subjects::Asked;
+use crate::limits::LimitExceeded;
+use crate::query::Subject;
+use crate::service::{Service, ServiceError};
+
+/// A request that waits for its answer.
+type Waiting = ActiveRequest<Ipc, [Line], (), [Line], ()>;
+
+/// Questions of no more items than this are answered on the door's own thread: to hand them over costs more.
+const SMALL: usize = 8;
+/// A sleeping door looks around this often without being woken.
+const LOOK: Duration = Duration::from_secs(1);
+/// The same while it drains.
+const LOOK_DRAINING: Duration = Duration::from_millis(20);
+/// What dead processes left is cleaned up this often at the least, even when there is always something to do.
+const CLEANUP: Duration = Duration::from_secs(10);
+/// Whether the caller is still there is looked at this often while others work on the answer.
+const STILL_THERE: Duration = Duration::from_millis(50);
+/// A caller that has not fetched its last answers for so long gets no more.
+const ROOM_PATIENCE: Duration = Duration::from_millis(100);
+
+/// The thread's state.
+#[derive(Debug)]
+pub(super) struct Attendant {
+    ports: Ports,
+    desk: Arc<Desk>,
+    runtime: Handle,
+    spin: Duration,
+    draining: Arc<AtomicBool>,
+}
+
+/// What the thread shares with work that was handed over.
+#[derive(Debug)]
+struct Desk {
+    service: Arc<Service>,
+    answered: Arc<Notifier<Ipc>>,
+    handed_over: AtomicUsize,
+}
+
+/// To whom an answer goes.
+#[derive(Clone, Copy, Debug)]
+struct Caller {
+    nonce: Nonce,
+    client: ClientId,
+}
+
+impl Attendant {
+    pub fn new(
+        ports: Ports,
+        service: Arc<Service>,
+        runtime: Handle,
+        spin: Duration,
+        draining: Arc<AtomicBool>,
+    ) -> Self {
+        let desk = Desk { service, answered: Arc::clone(&ports.answered), handed_over: AtomicUsize::new(0) };
+        Self { ports, desk: Arc::new(desk), runtime, spin, draining }
+    }
+
+    /// Answers until the door drains and everything under way is answered.
+    ///
+    /// # Errors
+    /// The memory is taken away.
+    pub fn attend(self) -> Result<(), String> {
+        let mut cleaned = Instant::now();
+        loop {
+            let draining = self.draining.load(Ordering::Acquire);
+            let mut any = false;
+            while let Some(waiting) = self.next() {
+                any = true;
+                self.take(waiting);
+            }
+            if draining && self.desk.handed_over.load(Ordering::Acquire) == 0 {
+                return Ok(());
+            }
+            if any && self.comes_soon() {
+                continue;
+            }
+            let look = if draining { LOOK_DRAINING } else { LOOK };
+            let woken = sleep(&self.ports.asked, look)?;
+            if woken == 0 && !draining || cleaned.elapsed() > CLEANUP {
+                self.ports.node.try_cleanup_dead_nodes();
+                cleaned = Instant::now();
+            }
+        }
+    }
+
+    fn next(&self) -> Option<Waiting> {
+        // A broken connection is its client's misfortune, not the door's.
+        self.ports.server.receive().unwrap_or_else(|error| {
+            tracing::warn!("a connection of shared memory cannot be read: {error}");
+            None
+        })
+    }
+
+    /// Looks for the next request for a short time, which is quicker than sleeping and being woken.
+    fn comes_soon(&self) -> bool {
+        let end = Instant::now() + self.spin;
+        while Instant::now() < end {
+            if self.ports.server.has_requests().unwrap_or(false) {
+                return true;
+            }
+            std::hint::spin_loop();
+        }
+        false
+    }
+
+    fn take(&self, waiting: Waiting) {
+        let limits = self.desk.service.limits();
+        let (most, most_answered) = (limits.max_shared_memory_request_bytes, limits.max_shared_memory_response_bytes);
+        // From here on only the copy counts: the client may go on writing to its memory.
+        let shared = waiting.payload().as_flattened();
+        let size = LimitExceeded::check("max_shared_memory_request_bytes", shared.len(), most);
+        let message = shared.get(..shared.len().min(most)).unwrap_or_default().to_vec();
+        let header = RequestHeader::read(&message);
+        let caller = Caller { nonce: header.nonce, client: header.client };
+        let decoded = size.map_err(ServiceError::from).and_then(|()| decode(&message, limits));
+        drop(message);
+        let request = match decoded {
+            Ok(request) => request,
+            Err(error) => return self.desk.give(&waiting, caller, &error_message(caller.nonce, &error)),
+        };
+        if is_small(&request) {
+            let question = |view: &_| answered(&request, caller.nonce, most_answered, view);
+            if let Some(answer) = self.desk.service.ask_here(&request.target, request.patience, question) {
+                return self.desk.give(&waiting, caller, &message_of(caller.nonce, answer));
+            }
+        }
+        self.hand_over(waiting, caller, request);
+    }
+
+    fn hand_over(&self, waiting: Waiting, caller: Caller, request: Request) {
+        let desk = Arc::clone(&self.desk);
+        desk.handed_over.fetch_add(1, Ordering::AcqRel);
+        self.runtime.spawn(async move {
+            // Counted down however the work ends.
+            let _counted = Counted(Arc::clone(&desk));
+            let most = desk.service.limits().max_shared_memory_response_bytes;
+            let (target, patience, nonce) = (request.target.clone(), request.patience, caller.nonce);
+            let question = move |view: &_| answered(&request, nonce, most, view);
+            let asked = desk.service.ask(&target, patience, question);
+            tokio::pin!(asked);
+            loop {
+                match tokio::time::timeout(STILL_THERE, &mut asked).await {
+                    Ok(answer) => return desk.give(&waiting, caller, &message_of(nonce, answer)),
+                    // Dropping the question stops the work.
+                    Err(_) if !waiting.is_connected() => return,
+                    Err(_) => {}
+                }
+            }
+        });
+    }
+}
+
+/// Gives a place back.
+struct Counted(Arc<Desk>);
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        self.0.handed_over.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+fn message_of(nonce: Nonce, answer: Result<Vec<u8>, ServiceError>) -> Vec<u8> {
+    answer.unwrap_or_else(|error| error_message(nonce, &error))
+}
+
+/// Whether a question surely takes little time. One motion can take long, and so can all pairs of a scene.
+fn is_small(request: &Request) -> bool {
+    let all_pairs = |asked: &Asked| matches!(asked, Asked::Subject(Subject::All | Subject::ChangedSince(_)));
+    let quick = match &request.question {
+        Question::States(..) | Question::Rays(_) => true,
+        Question::Motions(..) => false,
+        Question::Pairs { items, .. } => !items.iter().any(all_pairs),
+    };
+    quick && request.items <= SMALL
+}
+
+impl Desk {
+    /// Sends an answer and wakes the one who waits for it. A caller that is gone, or does not fetch its answers, gets
+    /// none: it has stopped waiting, or will by its own deadline.
+    fn give(&self, waiting: &Waiting, caller: Caller, message: &[u8]) {
+        if let Err(problem) = self.try_give(waiting, message) {
+            tracing::warn!("an answer through shared memory was not delivered: {problem}");
+        }
+        self.wake(caller.client);
+    }
+
+    fn try_give(&self, waiting: &Waiting, message: &[u8]) -> Result<(), String> {
+        let (lines, until) = (lines(message), Instant::now() + ROOM_PATIENCE);
+        let room = loop {
+            // A dead client's slot may have a new owner; the nonce keeps the new one safe, this spares it the work.
+            if !waiting.is_connected() {
+                return Ok(());
+            }
+            match waiting.loan_slice_uninit(lines.len()) {
+                Ok(room) => break room,
+                Err(LoanError::OutOfMemory) if Instant::now() < until => thread::sleep(Duration::from_millis(1)),
+                Err(error) => return Err(error.to_string()),
+            }
+        };
+        room.write_from_slice(lines).send().map_err(told).map(drop)
+    }
+
+    fn wake(&self, client: ClientId) {
+        let name = listener_name(client);
+        self.answered.for_each_listener(|one, details| {
+            if details.listener_name.as_str() != name {
+                return CallbackProgression::Continue;
+            }
+            if let Err(error) = one.notify() {
+                tracing::debug!("a client of shared memory was not woken: {error:?}");
+            }
+            CallbackProgression::Stop
+        });
+    }
+}
