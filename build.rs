@@ -8,7 +8,9 @@ use std::{env, error::Error, fs};
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=proto");
     println!("cargo::rerun-if-changed=build.rs");
-    if env::var_os("CARGO_FEATURE_GRPC").is_none() {
+    let has = |feature: &str| env::var_os(feature).is_some();
+    let grpc = has("CARGO_FEATURE_GRPC");
+    if !grpc && !has("CARGO_FEATURE_SHARED_MEMORY") {
         return Ok(());
     }
     let mut files: Vec<PathBuf> =
@@ -19,6 +21,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::write(out.join("clearance.descriptors"), prost::Message::encode_to_vec(&descriptors))?;
     let mut config = prost_build::Config::new();
     config.bytes(["."]);
-    tonic_prost_build::configure().compile_fds_with_config(descriptors, config)?;
+    tonic_prost_build::configure()
+        .build_client(grpc)
+        .build_server(grpc)
+        .compile_fds_with_config(descriptors, config)?;
     Ok(())
 }

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #define CLEARANCE_MAGIC {0x43, 0x4c, 0x52, 0x53, 0x48, 0x4d, 0x0d, 0x0a}
-#define CLEARANCE_ABI_HASH UINT64_C(0xb77ccc0d4828909b)
+#define CLEARANCE_ABI_HASH UINT64_C(0x5f1251c2ed734f85)
 #define CLEARANCE_VERSION 1
 #define CLEARANCE_ALIGNMENT 64
 #define CLEARANCE_MOST_SECTIONS 64
@@ -22,7 +22,7 @@ typedef struct clearance_request_header {
     uint64_t total_bytes; /* length of the message, header and table included */
     uint8_t nonce[16]; /* random for each request; the answer has the same, and one with another is not the caller's */
     uint8_t client[16]; /* the client's own: its listener for answers has these bytes as its name, in lower-case hexadecimal */
-    uint32_t question; /* 1 states, 2 motions, 3 path, 4 collide, 5 distance, 6 rays */
+    uint32_t question; /* 1 states, 2 motions, 3 path, 4 collide, 5 distance, 6 rays, 7 any rpc by its name */
     uint32_t mode; /* 0 all items, 1 stop at the first hit; of rays: 0 the first body met, 1 every one, 2 whether there is any */
     uint32_t flags; /* bits that say which optional fields are given: 1 epoch, 2 cut_off, 4 accuracy, 8 max_pairs, 16 layers, 32 mask, 64 resolution, 128 max_states, 256 time_budget_ns; and 512: disregard allowed collisions */
     uint32_t items; /* rows of the columns of items: states, motions, waypoints of a path, subjects or rays */
@@ -138,7 +138,7 @@ static_assert(offsetof(clearance_section, reserved) == 24, "reserved");
 static_assert(sizeof(clearance_section) == 32, "clearance_section");
 
 enum clearance_section_kind {
-    CLEARANCE_SCENE = 1, /* request: the scene's name, UTF-8; must be there */
+    CLEARANCE_SCENE = 1, /* request, but for any rpc: the scene's name, UTF-8; must be there */
     CLEARANCE_ROBOT = 2, /* request for states, motions, path: the robot's name in the scene, UTF-8; must be there */
     CLEARANCE_POSITIONS = 3, /* request for states, motions, path: joint positions in the robot's order, radians or metres; a row a state or waypoint, or start and goal of a motion one after the other */
     CLEARANCE_GROUPS = 4, /* request: names of the groups that are looked at, UTF-8, a zero byte after each */
@@ -151,6 +151,8 @@ enum clearance_section_kind {
     CLEARANCE_ORIGINS = 11, /* request for rays: where each begins, metres, world */
     CLEARANCE_DIRECTIONS = 12, /* request for rays: of any length but zero, world */
     CLEARANCE_LENGTHS = 13, /* request for rays: how far each goes, metres; one row for all, or one each */
+    CLEARANCE_RPC = 14, /* request for any rpc: its service and method, for example `Queries/CastShapes`, UTF-8; must be there */
+    CLEARANCE_MESSAGE = 15, /* request for any rpc: its request message, protobuf; absent: an empty one. Of `Assets/PutAsset` the messages of the stream, each behind its length as a varint */
     CLEARANCE_VERDICTS = 32, /* an item's verdict: the numbers of `Verdict`, of rays of `CastVerdict` */
     CLEARANCE_INDETERMINACIES = 33, /* why an item is INDETERMINATE: the numbers of `Indeterminacy` */
     CLEARANCE_NEAREST_LOWER = 34, /* distance wanted, metres: of the pair of least signed distance; NaN: no such pair */
@@ -171,6 +173,7 @@ enum clearance_section_kind {
     CLEARANCE_UNDECIDED_FROM = 49, /* of motions, a part of it: the first stretch that is not proved; NaN: none */
     CLEARANCE_UNDECIDED_TO = 50, /* of motions, a part of it: its end; NaN: none */
     CLEARANCE_STATES = 51, /* of motions: states that pairs were measured in, count, a double; NaN: not run */
+    CLEARANCE_RESPONSE = 52, /* of any rpc: its response message, protobuf */
     CLEARANCE_NEAREST_A_KIND = 64, /* sides wanted, side A of the nearest pair: 0 no pair, 1 a link, 2 the question's shape, 3 a body */
     CLEARANCE_NEAREST_A_ID = 65, /* the same: index of the link, id of the body, unsigned */
     CLEARANCE_NEAREST_A_SHAPE = 66, /* the same: which shape of the link, unsigned */

@@ -3,8 +3,9 @@
 
 use clearance::limits::Limits;
 use clearance::service::ServiceError;
-use clearance::transports::shared_memory::decode;
+use clearance::transports::shared_memory::{Received, decode};
 use clearance::transports::shared_memory::layout::{ABI_HASH, MAGIC, RequestHeader, VERSION};
+use clearance::transports::wire::bytes::Bytes;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -20,10 +21,11 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 fn looked_at(message: &[u8]) {
-    match decode(message, &Limits::default()) {
-        Ok(request) => {
+    match decode(&Bytes::copy_from_slice(message), &Limits::default()) {
+        Ok(Received::Asked(request)) => {
             assert!(request.items <= Limits::default().max_items && !request.target.scene.contains('\u{fffd}'))
         }
+        Ok(Received::Called(called)) => assert!(called.rpc.len() <= 64),
         Err(ServiceError::Invalid { field, problem }) => assert!(!field.is_empty() && !problem.is_empty()),
         Err(error) => assert!(matches!(error, ServiceError::Limit(_)), "{error}"),
     }

@@ -2,9 +2,9 @@
 
 #[cfg(feature = "grpc")]
 pub mod grpc;
-#[cfg(feature = "grpc")]
+#[cfg(any(feature = "grpc", feature = "shared-memory"))]
 pub mod requests;
 #[cfg(feature = "shared-memory")]
 pub mod shared_memory;
-#[cfg(feature = "grpc")]
+#[cfg(any(feature = "grpc", feature = "shared-memory"))]
 pub mod wire;

@@ -17,7 +17,7 @@ use tonic::transport::Channel;
 use tonic::{Code, Request, Status};
 
 use crate::support::daemon::{RunningDaemon, config};
-use crate::support::door::{Door, Grpc, Messages};
+use crate::support::door::{Door, Grpc, Messages, Streams};
 use crate::support::messages::*;
 use crate::support::watchdog::{eventually, watched};
 

@@ -81,52 +81,18 @@ pub(super) fn need(path: &str) -> Need {
 mod tests {
     use std::collections::BTreeSet;
 
-    use prost::Message;
     use tonic_health::pb::FILE_DESCRIPTOR_SET as HEALTH;
 
     use super::*;
+    use crate::transports::wire::descriptors::methods;
     use crate::transports::wire::v1::DESCRIPTORS;
-
-    /// The part of a descriptor set that names rpcs (google/protobuf/descriptor.proto).
-    #[derive(Clone, PartialEq, Message)]
-    struct Files {
-        #[prost(message, repeated, tag = "1")]
-        file: Vec<File>,
-    }
-
-    #[derive(Clone, PartialEq, Message)]
-    struct File {
-        #[prost(string, tag = "2")]
-        package: String,
-        #[prost(message, repeated, tag = "6")]
-        service: Vec<Service>,
-    }
-
-    #[derive(Clone, PartialEq, Message)]
-    struct Service {
-        #[prost(string, tag = "1")]
-        name: String,
-        #[prost(message, repeated, tag = "2")]
-        method: Vec<Method>,
-    }
-
-    #[derive(Clone, PartialEq, Message)]
-    struct Method {
-        #[prost(string, tag = "1")]
-        name: String,
-    }
 
     #[test]
     fn every_rpc_that_is_served_has_its_row_and_no_row_is_stale() {
         use tonic_reflection::pb::{v1, v1alpha};
         let mut served = BTreeSet::new();
         for descriptors in [DESCRIPTORS, HEALTH, v1::FILE_DESCRIPTOR_SET, v1alpha::FILE_DESCRIPTOR_SET] {
-            for file in Files::decode(descriptors).unwrap().file {
-                for service in file.service {
-                    let name = format!("{}.{}", file.package, service.name);
-                    served.extend(service.method.into_iter().map(|method| (name.clone(), method.name)));
-                }
-            }
+            served.extend(methods(descriptors).map(|method| (method.service, method.method)));
         }
         let listed: BTreeSet<_> = TABLE.iter().map(|(s, m, _)| ((*s).to_owned(), (*m).to_owned())).collect();
         assert_eq!(listed.len(), TABLE.len(), "a row stands twice");

@@ -4,6 +4,7 @@
 //! threads that answer them, so that no connection waits for another's message.
 
 mod assets;
+mod call;
 mod motions;
 mod poses;
 mod queries;
@@ -14,6 +15,7 @@ mod server;
 mod watch;
 
 pub use assets::{describe_mesh, has_assets, put_asset_response};
+pub use call::call;
 pub use motions::{check_motions, check_path, clearance};
 pub use poses::{PoseMessages, pose_stream};
 pub use queries::{

@@ -4,7 +4,7 @@
 use super::codes;
 use super::error_card::ErrorCard;
 use super::layout::{ABI_HASH, MAGIC, ResponseHeader, VERSION, kind};
-use super::request::Nonce;
+use super::request::{Nonce, question_number};
 use super::sections::Writer;
 use crate::geometry::Vec3;
 use crate::narrow_phase::Cost;
@@ -96,6 +96,14 @@ pub fn rays_message(frame: &Frame, answers: &Answers<CastItem>) -> Vec<u8> {
         ..framed(frame, cost)
     };
     finished(writer, header)
+}
+
+/// The response message of an rpc that was called by its name.
+#[must_use]
+pub fn response_message(nonce: Nonce, response: &[u8]) -> Vec<u8> {
+    let mut writer = Writer::new(ResponseHeader::BYTES, 1);
+    writer.bytes(kind::RESPONSE, response.iter().copied());
+    finished(writer, ResponseHeader { nonce, question: question_number::CALL, ..ResponseHeader::default() })
 }
 
 /// Why a request was not answered.

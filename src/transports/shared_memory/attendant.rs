@@ -10,18 +10,20 @@ use iceoryx2::active_request::ActiveRequest;
 use iceoryx2::port::LoanError;
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::prelude::CallbackProgression;
+use prost::bytes::Bytes;
 use tokio::runtime::Handle;
 
-use super::answer::error_message;
+use super::answer::{error_message, response_message};
 use super::door::Ports;
 use super::endpoint::{Ipc, Line, lines, listener_name, sleep, told};
 use super::layout::RequestHeader;
 use super::questions::answered;
-use super::request::{ClientId, Nonce, Question, Request, decode};
+use super::request::{Called, ClientId, Nonce, Question, Received, Request, decode};
 use super::subjects::Asked;
 use crate::limits::LimitExceeded;
 use crate::query::Subject;
 use crate::service::{Service, ServiceError};
+use crate::transports::requests;
 
 /// A request that waits for its answer.
 type Waiting = ActiveRequest<Ipc, [Line], (), [Line], ()>;
@@ -130,13 +132,14 @@ impl Attendant {
         // From here on only the copy counts: the client may go on writing to its memory.
         let shared = waiting.payload().as_flattened();
         let size = LimitExceeded::check("max_shared_memory_request_bytes", shared.len(), most);
-        let message = shared.get(..shared.len().min(most)).unwrap_or_default().to_vec();
+        let message = Bytes::copy_from_slice(shared.get(..shared.len().min(most)).unwrap_or_default());
         let header = RequestHeader::read(&message);
         let caller = Caller { nonce: header.nonce, client: header.client };
         let decoded = size.map_err(ServiceError::from).and_then(|()| decode(&message, limits));
         drop(message);
         let request = match decoded {
-            Ok(request) => request,
+            Ok(Received::Asked(request)) => *request,
+            Ok(Received::Called(called)) => return self.call(waiting, caller, called),
             Err(error) => return self.desk.give(&waiting, caller, &error_message(caller.nonce, &error)),
         };
         if is_small(&request) {
@@ -149,19 +152,41 @@ impl Attendant {
     }
 
     fn hand_over(&self, waiting: Waiting, caller: Caller, request: Request) {
+        let service = Arc::clone(&self.desk.service);
+        self.work(waiting, caller, async move {
+            let most = service.limits().max_shared_memory_response_bytes;
+            let (target, patience) = (request.target.clone(), request.patience);
+            service.ask(&target, patience, move |view| answered(&request, caller.nonce, most, view)).await
+        });
+    }
+
+    fn call(&self, waiting: Waiting, caller: Caller, Called { rpc, message, timeout }: Called) {
+        let service = Arc::clone(&self.desk.service);
+        self.work(waiting, caller, async move {
+            let response = requests::call(&service, &rpc, message, timeout).await?;
+            let message = response_message(caller.nonce, &response);
+            let most = service.limits().max_shared_memory_response_bytes;
+            LimitExceeded::check("max_shared_memory_response_bytes", message.len(), most)?;
+            Ok(message)
+        });
+    }
+
+    /// Has others work on the answer, as long as its caller is there.
+    fn work(
+        &self,
+        waiting: Waiting,
+        caller: Caller,
+        answering: impl Future<Output = Result<Vec<u8>, ServiceError>> + Send + 'static,
+    ) {
         let desk = Arc::clone(&self.desk);
         desk.handed_over.fetch_add(1, Ordering::AcqRel);
         self.runtime.spawn(async move {
             // Counted down however the work ends.
             let _counted = Counted(Arc::clone(&desk));
-            let most = desk.service.limits().max_shared_memory_response_bytes;
-            let (target, patience, nonce) = (request.target.clone(), request.patience, caller.nonce);
-            let question = move |view: &_| answered(&request, nonce, most, view);
-            let asked = desk.service.ask(&target, patience, question);
-            tokio::pin!(asked);
+            tokio::pin!(answering);
             loop {
-                match tokio::time::timeout(STILL_THERE, &mut asked).await {
-                    Ok(answer) => return desk.give(&waiting, caller, &message_of(nonce, answer)),
+                match tokio::time::timeout(STILL_THERE, &mut answering).await {
+                    Ok(answer) => return desk.give(&waiting, caller, &message_of(caller.nonce, answer)),
                     // Dropping the question stops the work.
                     Err(_) if !waiting.is_connected() => return,
                     Err(_) => {}

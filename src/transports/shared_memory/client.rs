@@ -17,8 +17,8 @@ use iceoryx2::service::port_factory::client::ClientCreateError;
 use super::endpoint::{
     BadEndpoint, Endpoint, Events, Ipc, Line, Questions, attribute, lines, listener_name, sleep, told,
 };
-use super::layout::{ABI_HASH, ALIGNMENT};
-use super::message::{Ask, Envelope, request_message};
+use super::layout::{ABI_HASH, ALIGNMENT, kind};
+use super::message::{Ask, Envelope, call_message, request_message};
 use super::reply::{Came, Refusal, Reply, decode};
 use super::request::{ClientId, Nonce};
 use super::sections::Malformed;
@@ -187,6 +187,27 @@ impl Client {
         let client = self.id;
         let envelope = Envelope { target, timeout: Some(timeout), time_budget, wants_sides, nonce, client };
         self.exchange(&request_message(&envelope, ask), nonce, options)
+    }
+
+    /// Calls an rpc by its name, for example `Scenes/Apply`, with the bytes of its request message, and waits for the bytes
+    /// of its response message. Rpcs that stream answers are gRPC's alone.
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub fn call(&mut self, rpc: &str, message: &[u8], timeout: Duration) -> Result<Vec<u8>, ClientError> {
+        let nonce = random()?;
+        let target = Target::default();
+        let envelope = Envelope {
+            target: &target,
+            timeout: Some(timeout),
+            time_budget: None,
+            wants_sides: false,
+            nonce,
+            client: self.id,
+        };
+        let options = Options { timeout, ..Options::default() };
+        let reply = self.exchange(&call_message(&envelope, rpc, message), nonce, &options)?;
+        Ok(reply.bytes(kind::RESPONSE).unwrap_or_default().to_vec())
     }
 
     /// Sends bytes as they are and waits for the answer to `nonce`: for those who write messages themselves. An answer

@@ -138,7 +138,7 @@ header! {
         24 total_bytes: u64 = "length of the message, header and table included";
         32 nonce: [u8; 16] = "random for each request; the answer has the same, and one with another is not the caller's";
         48 client: [u8; 16] = "the client's own: its listener for answers has these bytes as its name, in lower-case hexadecimal";
-        64 question: u32 = "1 states, 2 motions, 3 path, 4 collide, 5 distance, 6 rays";
+        64 question: u32 = "1 states, 2 motions, 3 path, 4 collide, 5 distance, 6 rays, 7 any rpc by its name";
         68 mode: u32 = "0 all items, 1 stop at the first hit; of rays: 0 the first body met, 1 every one, 2 whether there is any";
         72 flags: u32 = "bits that say which optional fields are given: 1 epoch, 2 cut_off, 4 accuracy, 8 max_pairs, 16 layers, 32 mask, 64 resolution, 128 max_states, 256 time_budget_ns; and 512: disregard allowed collisions";
         76 items: u32 = "rows of the columns of items: states, motions, waypoints of a path, subjects or rays";
@@ -219,7 +219,7 @@ pub mod kind {
     }
 
     columns! {
-        1 SCENE 1 x 1 "request: the scene's name, UTF-8; must be there";
+        1 SCENE 1 x 1 "request, but for any rpc: the scene's name, UTF-8; must be there";
         2 ROBOT 1 x 1 "request for states, motions, path: the robot's name in the scene, UTF-8; must be there";
         3 POSITIONS 8 x 0 "request for states, motions, path: joint positions in the robot's order, radians or metres; a row a state or waypoint, or start and goal of a motion one after the other";
         4 GROUPS 1 x 1 "request: names of the groups that are looked at, UTF-8, a zero byte after each";
@@ -232,6 +232,9 @@ pub mod kind {
         11 ORIGINS 8 x 3 "request for rays: where each begins, metres, world";
         12 DIRECTIONS 8 x 3 "request for rays: of any length but zero, world";
         13 LENGTHS 8 x 1 "request for rays: how far each goes, metres; one row for all, or one each";
+
+        14 RPC 1 x 1 "request for any rpc: its service and method, for example `Queries/CastShapes`, UTF-8; must be there";
+        15 MESSAGE 1 x 1 "request for any rpc: its request message, protobuf; absent: an empty one. Of `Assets/PutAsset` the messages of the stream, each behind its length as a varint";
 
         32 VERDICTS 1 x 1 "an item's verdict: the numbers of `Verdict`, of rays of `CastVerdict`";
         33 INDETERMINACIES 1 x 1 "why an item is INDETERMINATE: the numbers of `Indeterminacy`";
@@ -253,6 +256,8 @@ pub mod kind {
         49 UNDECIDED_FROM 8 x 1 "of motions, a part of it: the first stretch that is not proved; NaN: none";
         50 UNDECIDED_TO 8 x 1 "of motions, a part of it: its end; NaN: none";
         51 STATES 8 x 1 "of motions: states that pairs were measured in, count, a double; NaN: not run";
+
+        52 RESPONSE 1 x 1 "of any rpc: its response message, protobuf";
 
         64 NEAREST_A_KIND 1 x 1 "sides wanted, side A of the nearest pair: 0 no pair, 1 a link, 2 the question's shape, 3 a body";
         65 NEAREST_A_ID 8 x 1 "the same: index of the link, id of the body, unsigned";

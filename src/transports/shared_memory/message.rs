@@ -99,6 +99,16 @@ pub enum Ask<'a> {
     Rays(&'a CastRays),
 }
 
+/// The message of a request that calls an rpc by its name, `SERVICE/METHOD`, with the bytes of its request message.
+#[must_use]
+pub fn call_message(envelope: &Envelope<'_>, rpc: &str, message: &[u8]) -> Vec<u8> {
+    let mut writer = Writer::new(RequestHeader::BYTES, 2);
+    writer.text(kind::RPC, rpc);
+    writer.bytes(kind::MESSAGE, message.iter().copied());
+    let header = RequestHeader { question: question_number::CALL, ..frame(envelope) };
+    writer.finish(|sections, total_bytes, bytes| RequestHeader { sections, total_bytes, ..header }.write(bytes))
+}
+
 /// What a request says beside its question.
 #[derive(Clone, Debug)]
 pub struct Envelope<'a> {
@@ -272,13 +282,15 @@ fn pose_row(pose: Pose) -> [f64; 7] {
 
 #[cfg(test)]
 mod tests {
+    use prost::bytes::Bytes;
+
     use super::*;
     use crate::geometry::Shape;
     use crate::limits::Limits;
     use crate::query::{CastMode, Find, Mode, Subject, Wants};
     use crate::scene::{BodyId, Epoch, Revision};
     use crate::service::RevisionRule;
-    use crate::transports::shared_memory::request::{Question, Request, decode};
+    use crate::transports::shared_memory::request::{Called, Question, Received, Request, decode};
     use crate::transports::shared_memory::subjects::Asked;
 
     fn context() -> Context {
@@ -345,7 +357,33 @@ mod tests {
     }
 
     fn read(message: &[u8]) -> Request {
-        decode(message, &Limits::default()).unwrap()
+        match received(message) {
+            Received::Asked(request) => *request,
+            other @ Received::Called(_) => panic!("{other:?}"),
+        }
+    }
+
+    fn received(message: &[u8]) -> Received {
+        decode(&Bytes::copy_from_slice(message), &Limits::default()).unwrap()
+    }
+
+    fn calling(rpc: &str, message: &[u8]) -> Vec<u8> {
+        let (target, timeout) = (Target::default(), Some(Duration::from_millis(20)));
+        let (nonce, client) = ([1; 16], [2; 16]);
+        let envelope = Envelope { target: &target, timeout, time_budget: None, wants_sides: false, nonce, client };
+        call_message(&envelope, rpc, message)
+    }
+
+    #[test]
+    fn the_daemon_reads_what_rpc_the_client_calls() {
+        for message in [b"some bytes".as_slice(), b""] {
+            let called = Called {
+                rpc: "Queries/Collide".to_owned(),
+                message: Bytes::copy_from_slice(message),
+                timeout: Some(Duration::from_millis(20)),
+            };
+            assert!(matches!(received(&calling("Queries/Collide", message)), Received::Called(read) if read == called));
+        }
     }
 
     #[test]
@@ -394,6 +432,7 @@ mod tests {
             written(Ask::Collide(&subjects(), &context())),
             written(Ask::Distance(&subjects(), &context())),
             written(Ask::Rays(&rays())),
+            calling("Scenes/ListScenes", b""),
         ];
         assert!(messages.iter().all(|message| message.len() <= 4096), "fuzz/run cuts longer ones");
         let Ok(folder) = std::env::var("FUZZ_CORPUS") else { return };

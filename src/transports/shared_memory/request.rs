@@ -3,6 +3,8 @@
 
 use std::time::Duration;
 
+use prost::bytes::Bytes;
+
 use super::codes;
 use super::layout::{ABI_HASH, MAGIC, RequestHeader, VERSION, kind};
 use super::sections::{Malformed, Sections, name_of};
@@ -31,6 +33,26 @@ pub(super) mod flag {
     pub const TIME_BUDGET: u32 = 256;
     pub const DISREGARD_ALLOWED: u32 = 512;
     pub const ALL: u32 = 1023;
+}
+
+/// A request as it came.
+#[derive(Clone, Debug)]
+pub enum Received {
+    /// A question in columns.
+    Asked(Box<Request>),
+    /// An rpc and its message.
+    Called(Called),
+}
+
+/// An rpc that is called by its name, with the message that gRPC would carry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Called {
+    /// `SERVICE/METHOD`.
+    pub rpc: String,
+    /// Its request message.
+    pub message: Bytes,
+    /// How long the caller listens.
+    pub timeout: Option<Duration>,
 }
 
 /// A request that can be asked of a scene.
@@ -89,6 +111,7 @@ pub(super) mod question_number {
     pub const COLLIDE: u32 = 4;
     pub const DISTANCE: u32 = 5;
     pub const RAYS: u32 = 6;
+    pub const CALL: u32 = 7;
 }
 
 impl From<Malformed> for ServiceError {
@@ -97,24 +120,29 @@ impl From<Malformed> for ServiceError {
     }
 }
 
-/// Reads a request. `message` must be memory that the client cannot write to any more.
+/// Reads a request.
 ///
 /// # Errors
 /// A field that cannot be, or a name or message beyond its cap.
-pub fn decode(message: &[u8], limits: &Limits) -> Result<Request, ServiceError> {
+pub fn decode(message: &Bytes, limits: &Limits) -> Result<Received, ServiceError> {
     let header = RequestHeader::read(message);
-    let message = check_frame(&header, message)?;
-    let sections = Sections::check(message, RequestHeader::BYTES, header.sections)?;
+    let whole = check_frame(&header, message)?;
+    let sections = Sections::check(whole, RequestHeader::BYTES, header.sections)?;
+    if header.question == question_number::CALL {
+        let message = message.slice_ref(sections.bytes(kind::MESSAGE).unwrap_or_default());
+        let Patience { timeout, .. } = patience(&header);
+        return Ok(Received::Called(Called { rpc: rpc(&sections)?, message, timeout }));
+    }
     let target = Target { scene: name(&sections, kind::SCENE, limits)?, revision: revision_rule(&header)? };
     let decoder = Decoder { header: &header, sections: &sections, limits };
-    Ok(Request {
+    Ok(Received::Asked(Box::new(Request {
         target,
         patience: patience(&header),
         question: decoder.question()?,
         question_number: header.question,
         items: header.items as usize,
         wants_sides: header.wants & codes::WANTS_SIDES != 0,
-    })
+    })))
 }
 
 /// The message as long as it says it is.
@@ -168,6 +196,15 @@ fn name(sections: &Sections<'_>, kind: u32, limits: &Limits) -> Result<String, S
     let name = sections.text(kind)?.ok_or_else(|| Malformed::new(name_of(kind), "must be said"))?;
     LimitExceeded::check("max_name_bytes", name.len(), limits.max_name_bytes)?;
     Ok(name.to_owned())
+}
+
+/// The rpc that is called. No rpc has a longer name than this, bytes.
+const LONGEST_RPC: usize = 64;
+
+fn rpc(sections: &Sections<'_>) -> Result<String, Malformed> {
+    let wrong = |problem: &str| Malformed::new(name_of(kind::RPC), problem);
+    let rpc = sections.text(kind::RPC)?.ok_or_else(|| wrong("must be said"))?;
+    if rpc.len() > LONGEST_RPC { Err(wrong("is longer than any name of an rpc")) } else { Ok(rpc.to_owned()) }
 }
 
 struct Decoder<'a> {

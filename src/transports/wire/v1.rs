@@ -3,7 +3,7 @@
 
 #![allow(missing_docs, clippy::all, unused_qualifications)]
 
-tonic::include_proto!("clearance.v1");
+include!(concat!(env!("OUT_DIR"), "/clearance.v1.rs"));
 
 /// Descriptors of all messages and services, for the reflection service.
 pub const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/clearance.descriptors"));

@@ -1,4 +1,5 @@
-//! What every door has to do. Each behaviour is written once, over [`Door`], and run through all of them.
+//! What every door has to do. Each behaviour is written once, over [`Door`], and run through all of them; those of streams
+//! over [`Streams`], and run through the doors that have streams.
 
 mod assets;
 mod bad_input;
@@ -18,34 +19,36 @@ mod scene_watches;
 mod scenes;
 mod voxels;
 
-/// Makes a test of each behaviour for each door.
-macro_rules! through_every_door {
-    ($($behaviour:ident),* $(,)?) => {
-        mod in_process {
+/// Makes a test of each behaviour for one door.
+macro_rules! through {
+    ($module:ident, $door:ty, $($behaviour:ident),*) => {
+        mod $module {
             $(#[tokio::test(flavor = "multi_thread")]
             async fn $behaviour() {
-                use crate::support::{door::{Door, InProcess}, watchdog::watched};
-                let door = InProcess::open(super::limits()).await;
-                watched(stringify!($behaviour), super::$behaviour(&door)).await;
-            })*
-        }
-        mod grpc {
-            $(#[tokio::test(flavor = "multi_thread")]
-            async fn $behaviour() {
-                use crate::support::{door::{Door, Grpc}, watchdog::watched};
-                let door = Grpc::open(super::limits()).await;
-                watched(stringify!($behaviour), super::$behaviour(&door)).await;
-            })*
-        }
-        mod grpc_unix {
-            $(#[tokio::test(flavor = "multi_thread")]
-            async fn $behaviour() {
-                use crate::support::{door::{Door, GrpcUnix}, watchdog::watched};
-                let door = GrpcUnix::open(super::limits()).await;
+                use crate::support::{door::Door, watchdog::watched};
+                let door = <$door>::open(super::limits()).await;
                 watched(stringify!($behaviour), super::$behaviour(&door)).await;
             })*
         }
     };
 }
 
-use through_every_door;
+/// Makes a test of each behaviour for each door.
+macro_rules! through_every_door {
+    ($($behaviour:ident),* $(,)?) => {
+        super::through_doors_with_streams!($($behaviour),*);
+        #[cfg(feature = "shared-memory")]
+        super::through!(shared_memory, crate::support::shared_memory_door::SharedMemory, $($behaviour),*);
+    };
+}
+
+/// Makes a test of each behaviour for each door that has streams.
+macro_rules! through_doors_with_streams {
+    ($($behaviour:ident),* $(,)?) => {
+        super::through!(in_process, crate::support::door::InProcess, $($behaviour),*);
+        super::through!(grpc, crate::support::door::Grpc, $($behaviour),*);
+        super::through!(grpc_unix, crate::support::door::GrpcUnix, $($behaviour),*);
+    };
+}
+
+use {through, through_doors_with_streams, through_every_door};

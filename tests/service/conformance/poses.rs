@@ -8,11 +8,11 @@ use clearance::limits::Limits;
 use clearance::transports::wire::v1;
 use tonic::Code;
 
-use super::through_every_door;
-use crate::support::door::{Door, Messages, Refusal};
+use super::through_doors_with_streams;
+use crate::support::door::{Messages, Refusal, Streams};
 use crate::support::messages::*;
 
-through_every_door!(
+through_doors_with_streams!(
     every_acknowledged_pose_is_in_the_revision_or_was_overtaken,
     a_bad_pose_is_refused_by_its_place_and_the_others_are_made,
     edits_of_others_come_in_between,
@@ -38,14 +38,14 @@ fn to(body: v1::BodyRef, x: f64) -> v1::BodyPose {
     v1::BodyPose { body: Some(body), pose: Some(at(x, 0.0, 0.0)) }
 }
 
-async fn balls(door: &impl Door, count: usize) {
+async fn balls(door: &impl Streams, count: usize) {
     door.create_scene(SCENE).await.unwrap();
     let ball = |i: usize| add(&format!("{i}"), sphere(0.1), at(0.0, 0.0, 0.0));
     door.apply(apply((0..count).map(ball).collect())).await.unwrap();
 }
 
 /// Where bodies are along x, by id.
-async fn places(door: &impl Door, revision: u64) -> BTreeMap<u64, f64> {
+async fn places(door: &impl Streams, revision: u64) -> BTreeMap<u64, f64> {
     let rule = v1::revision_rule::Rule::Exactly(revision);
     let revision = Some(v1::RevisionRule { epoch: None, rule: Some(rule) });
     let request = v1::GetSceneRequest { scene: SCENE.to_owned(), revision, ..Default::default() };
@@ -53,7 +53,7 @@ async fn places(door: &impl Door, revision: u64) -> BTreeMap<u64, f64> {
     door.get_scene(request).await.unwrap().bodies.into_iter().map(place).collect()
 }
 
-async fn every_acknowledged_pose_is_in_the_revision_or_was_overtaken(door: &impl Door) {
+async fn every_acknowledged_pose_is_in_the_revision_or_was_overtaken(door: &impl Streams) {
     balls(door, 8).await;
     let (sender, mut told) = door.pose_stream().await.unwrap();
     const MESSAGES: u64 = 600;
@@ -100,7 +100,7 @@ async fn every_acknowledged_pose_is_in_the_revision_or_was_overtaken(door: &impl
     assert!(overtaken > 0 && acknowledged.len() > 5, "{overtaken}, {}", acknowledged.len());
 }
 
-async fn a_bad_pose_is_refused_by_its_place_and_the_others_are_made(door: &impl Door) {
+async fn a_bad_pose_is_refused_by_its_place_and_the_others_are_made(door: &impl Streams) {
     balls(door, 2).await;
     let model = door.load_robot(load(ROBOT)).await.unwrap().id;
     door.apply(apply(vec![add_robot("arm", &model)])).await.unwrap();
@@ -145,7 +145,7 @@ async fn a_bad_pose_is_refused_by_its_place_and_the_others_are_made(door: &impl 
     assert_eq!(told.message().await, Ok(None));
 }
 
-async fn edits_of_others_come_in_between(door: &impl Door) {
+async fn edits_of_others_come_in_between(door: &impl Streams) {
     balls(door, 3).await;
     let (sender, mut told) = door.pose_stream().await.unwrap();
     let send = async move {
@@ -179,7 +179,7 @@ async fn edits_of_others_come_in_between(door: &impl Door) {
     assert_eq!((end[&1], end.len()), (199.0, 2));
 }
 
-async fn a_caller_that_goes_away_leaves_no_half_message(door: &impl Door) {
+async fn a_caller_that_goes_away_leaves_no_half_message(door: &impl Streams) {
     balls(door, 2).await;
     for _ in 0..10 {
         let (sender, mut told) = door.pose_stream().await.unwrap();
@@ -224,7 +224,7 @@ async fn a_caller_that_goes_away_leaves_no_half_message(door: &impl Door) {
     }
 }
 
-async fn an_interval_gathers_poses(door: &impl Door) {
+async fn an_interval_gathers_poses(door: &impl Streams) {
     balls(door, 1).await;
     let (sender, mut told) = door.pose_stream().await.unwrap();
     let begin = v1::PoseStreamRequest { interval: 0.3, bodies: vec![to(named("0"), 1.0)], ..first() };
@@ -240,7 +240,7 @@ async fn an_interval_gathers_poses(door: &impl Door) {
 }
 
 /// What a stream ends with.
-async fn ended(door: &impl Door, messages: Vec<v1::PoseStreamRequest>) -> Refusal {
+async fn ended(door: &impl Streams, messages: Vec<v1::PoseStreamRequest>) -> Refusal {
     let (sender, mut told) = door.pose_stream().await.unwrap();
     let send = async move {
         for message in messages {
@@ -261,7 +261,7 @@ async fn ended(door: &impl Door, messages: Vec<v1::PoseStreamRequest>) -> Refusa
     refusal
 }
 
-async fn streams_that_cannot_be_are_refused(door: &impl Door) {
+async fn streams_that_cannot_be_are_refused(door: &impl Streams) {
     balls(door, 1).await;
     let invalid = Code::InvalidArgument;
     let cases = [
@@ -293,7 +293,7 @@ async fn streams_that_cannot_be_are_refused(door: &impl Door) {
     assert_eq!(told.message().await.unwrap_err().code, Code::NotFound);
 }
 
-async fn waiting_poses_are_bounded(door: &impl Door) {
+async fn waiting_poses_are_bounded(door: &impl Streams) {
     balls(door, 1).await;
     let many = (0..51).map(|i| to(named(&format!("nobody {i}")), 0.0)).collect();
     let refusal = ended(door, vec![v1::PoseStreamRequest { bodies: many, ..first() }]).await;

@@ -8,11 +8,11 @@ use clearance::transports::wire::v1::query_stream_request::Question;
 use clearance::transports::wire::v1::query_stream_response::Outcome;
 use tonic::Code;
 
-use super::through_every_door;
-use crate::support::door::{Door, Messages};
+use super::through_doors_with_streams;
+use crate::support::door::{Messages, Streams};
 use crate::support::messages::*;
 
-through_every_door!(
+through_doors_with_streams!(
     questions_of_every_kind_are_answered_as_calls_are,
     answers_come_in_order_where_asked,
     a_question_that_is_refused_does_not_end_the_stream,
@@ -23,7 +23,7 @@ fn limits() -> Limits {
     Limits { max_stream_in_flight: 8, max_items: 100, ..Limits::default() }
 }
 
-async fn scene(door: &impl Door) {
+async fn scene(door: &impl Streams) {
     door.create_scene(SCENE).await.unwrap();
     let model = door.load_robot(load(ROBOT)).await.unwrap().id;
     let ball = |i: i32| add(&format!("{i}"), sphere(0.3), at(0.5 * f64::from(i), 0.4, 0.0));
@@ -40,7 +40,7 @@ fn options(in_order: bool, max_in_flight: u32) -> v1::QueryStreamRequest {
 }
 
 /// Every answer, in the order they came.
-async fn ask(door: &impl Door, questions: Vec<v1::QueryStreamRequest>) -> Vec<v1::QueryStreamResponse> {
+async fn ask(door: &impl Streams, questions: Vec<v1::QueryStreamRequest>) -> Vec<v1::QueryStreamResponse> {
     let (sender, mut told) = door.query_stream().await.unwrap();
     let send = async move {
         for question in questions {
@@ -61,7 +61,7 @@ fn packed(values: Vec<f64>) -> Option<v1::Doubles> {
     Some(v1::Doubles { form: Some(v1::doubles::Form::Packed(v1::PackedDoubles { values })) })
 }
 
-async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Door) {
+async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Streams) {
     scene(door).await;
     let context = Some(context());
     let robot = "arm".to_owned();
@@ -122,7 +122,7 @@ async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Door) {
     assert_eq!(answers, (11..).zip(called).collect());
 }
 
-async fn answers_come_in_order_where_asked(door: &impl Door) {
+async fn answers_come_in_order_where_asked(door: &impl Streams) {
     scene(door).await;
     // Long and short ones in turn.
     let question = |id: u64| {
@@ -139,7 +139,7 @@ async fn answers_come_in_order_where_asked(door: &impl Door) {
     }
 }
 
-async fn a_question_that_is_refused_does_not_end_the_stream(door: &impl Door) {
+async fn a_question_that_is_refused_does_not_end_the_stream(door: &impl Streams) {
     scene(door).await;
     let mut elsewhere = collide(vec![all_pairs()]);
     elsewhere.context.as_mut().unwrap().scene = "elsewhere".to_owned();
@@ -169,7 +169,7 @@ async fn a_question_that_is_refused_does_not_end_the_stream(door: &impl Door) {
     assert!(matches!(answers[4].outcome, Some(Outcome::Collide(_))));
 }
 
-async fn options_that_cannot_be_end_the_stream(door: &impl Door) {
+async fn options_that_cannot_be_end_the_stream(door: &impl Streams) {
     scene(door).await;
     let question = || asked(1, Question::Collide(collide(vec![body(named("1"))])));
     for (messages, code) in

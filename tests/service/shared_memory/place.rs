@@ -1,9 +1,7 @@
 //! A daemon with both doors, whose shared memory has a name and a folder of its own.
 
-use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use clearance::app::SharedMemory;
@@ -18,6 +16,7 @@ use tonic::transport::Channel;
 use crate::support::daemon::{RunningDaemon, config};
 use crate::support::door::{Door, InProcess};
 use crate::support::messages::*;
+pub use crate::support::shared_memory_door::{Name, unused_name};
 use crate::support::watchdog::watched;
 
 pub struct Place {
@@ -26,33 +25,6 @@ pub struct Place {
     pub queries: QueriesClient<Channel>,
     pub name: Name,
     pub root: TempDir,
-}
-
-/// A name that no other test has, on this machine.
-pub fn unused_name() -> Name {
-    static NEXT: AtomicUsize = AtomicUsize::new(0);
-    Name(format!("test-{}-{}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed)))
-}
-
-/// A door's name. Whatever is left of the door in /dev/shm goes with it: nobody opens the name again who would clean up.
-pub struct Name(String);
-
-impl Deref for Name {
-    type Target = str;
-
-    fn deref(&self) -> &str {
-        &self.0
-    }
-}
-
-impl Drop for Name {
-    fn drop(&mut self) {
-        let prefix = format!("{}.", self.0);
-        let files = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
-        for file in files.filter(|file| file.file_name().to_string_lossy().starts_with(&prefix)) {
-            std::fs::remove_file(file.path()).unwrap_or_default();
-        }
-    }
 }
 
 /// Little memory, so that many tests can run beside one another.

@@ -53,13 +53,13 @@ impl From<ServiceError> for Refusal {
 pub type Told<T> = Result<T, Refusal>;
 
 /// A stream of contacts.
-#[allow(async_fn_in_trait, reason = "the tests know both implementations")]
+#[allow(async_fn_in_trait, reason = "the tests know all implementations")]
 pub trait Contacts {
     async fn message(&mut self) -> Told<v1::WatchContactsResponse>;
 }
 
 /// A stream of messages; none at the end.
-#[allow(async_fn_in_trait, reason = "the tests know both implementations")]
+#[allow(async_fn_in_trait, reason = "the tests know all implementations")]
 pub trait Messages<M> {
     async fn message(&mut self) -> Told<Option<M>>;
 }
@@ -68,7 +68,7 @@ pub trait Messages<M> {
 pub type Sent<M> = mpsc::Sender<M>;
 
 /// A way to ask the daemon.
-#[allow(async_fn_in_trait, reason = "the tests know both implementations")]
+#[allow(async_fn_in_trait, reason = "the tests know all implementations")]
 pub trait Door {
     async fn open(limits: Limits) -> Self;
     async fn create(&self, request: v1::CreateSceneRequest) -> Told<v1::SceneSummary>;
@@ -95,6 +95,11 @@ pub trait Door {
     async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
         self.create(v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() }).await
     }
+}
+
+/// A way to ask that has streams, too.
+#[allow(async_fn_in_trait, reason = "the tests know all implementations")]
+pub trait Streams: Door {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts>;
     async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>>;
     async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)>;
@@ -199,7 +204,9 @@ impl Door for InProcess {
     async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
         Ok(requests::nearest_bodies(&self.service, request, None).await?)
     }
+}
 
+impl Streams for InProcess {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         let watch = requests::watch_contacts(&self.service, &request, None).await?;
         Ok(InProcessContacts { watch: Some(watch), messages: VecDeque::new() })
@@ -396,7 +403,9 @@ impl<W: Way> Door for Http2<W> {
     async fn nearest_bodies(&self, request: v1::NearestBodiesRequest) -> Told<v1::NearestBodiesResponse> {
         Ok(QueriesClient::new(self.channel.clone()).nearest_bodies(request).await?.into_inner())
     }
+}
 
+impl<W: Way> Streams for Http2<W> {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         Ok(QueriesClient::new(self.channel.clone()).watch_contacts(request).await?.into_inner())
     }

@@ -163,3 +163,12 @@ pub fn mesh_asset(sha256: String, mode: v1::MeshMode) -> v1::Shape {
 pub fn verdicts(answer: &v1::Answer) -> Vec<v1::Verdict> {
     answer.items.iter().map(v1::ItemAnswer::verdict).collect()
 }
+
+/// Contexts with something that only some questions take, and the field it is in.
+pub fn with_overlays() -> [(&'static str, v1::Context); 3] {
+    [
+        ("context.overlay", v1::Context { overlay: Some(v1::Overlay::default()), ..context() }),
+        ("context.alternatives", v1::Context { alternatives: vec![v1::Overlay::default()], ..context() }),
+        ("context.item_alternatives", v1::Context { item_alternatives: vec![0], ..context() }),
+    ]
+}

@@ -4,4 +4,6 @@ pub mod certificates;
 pub mod daemon;
 pub mod door;
 pub mod messages;
+#[cfg(feature = "shared-memory")]
+pub mod shared_memory_door;
 pub mod watchdog;

@@ -4,7 +4,7 @@ Made from src/transports/shared_memory/layout.rs by `cargo test --test service h
 """
 
 MAGIC = bytes.fromhex("434c5253484d0d0a")
-ABI_HASH = 0xb77ccc0d4828909b
+ABI_HASH = 0x5f1251c2ed734f85
 VERSION = 1
 ALIGNMENT = 64
 MOST_SECTIONS = 64
@@ -96,6 +96,8 @@ COLUMNS = {
     "origins": (11, 8, 3),
     "directions": (12, 8, 3),
     "lengths": (13, 8, 1),
+    "rpc": (14, 1, 1),
+    "message": (15, 1, 1),
     "verdicts": (32, 1, 1),
     "indeterminacies": (33, 1, 1),
     "nearest_lower": (34, 8, 1),
@@ -116,6 +118,7 @@ COLUMNS = {
     "undecided_from": (49, 8, 1),
     "undecided_to": (50, 8, 1),
     "states": (51, 8, 1),
+    "response": (52, 1, 1),
     "nearest_a_kind": (64, 1, 1),
     "nearest_a_id": (65, 8, 1),
     "nearest_a_shape": (66, 4, 1),
