@@ -14,9 +14,12 @@ PROGRAM = os.environ.get("CLEARANCE_BIN", str(ROOT / "target" / "debug" / "clear
 class DaemonTest(unittest.TestCase):
     """Gives every test `self.client` and an empty `self.scene`."""
 
+    #: What the daemon is told of its other doors.
+    DOORS = ["--no-shared-memory"]
+
     @classmethod
     def setUpClass(cls) -> None:
-        command = [PROGRAM, "serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory"]
+        command = [PROGRAM, "serve", "--grpc-address", "127.0.0.1:0", *cls.DOORS]
         cls.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         line = cls.process.stdout.readline().split()
         if line[:2] != ["listening", "grpc"]:

@@ -1,6 +1,7 @@
 """The examples and the README do what they say; the generated code is that of the .proto files."""
 
 import filecmp
+import os
 import re
 import subprocess
 import sys
@@ -14,7 +15,22 @@ CLIENT = ROOT / "clients" / "python"
 UR5 = ROOT / "tests" / "data" / "robot-ur5"
 
 
+#: The shared-memory door of these tests; no other daemon of the machine has the name.
+DOOR = f"python-examples-{os.getpid()}"
+
+
 class Examples(DaemonTest):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.DOORS = ["--shared-memory-name", DOOR, "--shared-memory-root", cls.folder.name]
+        super().setUpClass()
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        super().tearDownClass()
+        cls.folder.cleanup()
+
     def run_example(self, name: str, *arguments: str) -> str:
         address = [f"--address={self.address}"]
         command = [sys.executable, str(CLIENT / "examples" / name), *address, *arguments]
@@ -42,6 +58,7 @@ class Examples(DaemonTest):
         blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
         self.assertTrue(blocks)
         program = "\n".join([*blocks, ending]).replace("127.0.0.1:50551", self.address)
+        program = program.replace('shared_memory.Client("clearance")', f'shared_memory.Client("{DOOR}", "{self.folder.name}")')
         # The page loads `ur5.urdf` from the folder it is run in.
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, cwd=UR5)
         self.assertEqual(done.returncode, 0, done.stderr)

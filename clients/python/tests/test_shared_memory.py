@@ -11,13 +11,11 @@ import unittest
 import numpy as np
 
 import clearance
+from clearance import shared_memory
+from clearance.v1 import query_pb2, scene_pb2, service_pb2
 
 from .daemon import PROGRAM
 
-try:
-    from clearance import shared_memory
-except ImportError:
-    shared_memory = None
 
 URDF = """<robot name="crane">
   <link name="foot"/>
@@ -30,7 +28,6 @@ URDF = """<robot name="crane">
 </robot>"""
 
 
-@unittest.skipIf(shared_memory is None, "iceoryx2 is not installed")
 class SharedMemoryTest(unittest.TestCase):
     """A crane whose hook can reach a block."""
 
@@ -109,6 +106,23 @@ class SharedMemoryTest(unittest.TestCase):
         answer = self.door.cast_rays("cell", [[1.0, 0.0, 1.0], [3.0, 0.0, 1.0]], [[0, 0, -1], [0, 0, -1]], 5.0)
         self.assertEqual(answer.verdicts.tolist(), [2, 1])
         self.assertTrue(answer["hit_lower"][0] <= 1.8 <= answer["hit_upper"][0])
+
+    def test_any_rpc_is_called_by_its_name(self) -> None:
+        request = query_pb2.CollideRequest(
+            context=query_pb2.Context(scene="cell"),
+            items=[query_pb2.Subject(all_pairs=query_pb2.AllPairs())],
+        )
+        through_grpc = self.client._queries.Collide(request)
+        answer = self.door.call("Queries/Collide", request, service_pb2.CollideResponse)
+        self.assertEqual(answer, through_grpc)
+        edit = scene_pb2.Edit(remove_body=scene_pb2.RemoveBody(body=scene_pb2.BodyRef(name="nobody")))
+        with self.assertRaises(clearance.Conflict) as caught:
+            apply = service_pb2.ApplyRequest(scene="cell", edits=[edit])
+            self.door.call("Scenes/Apply", apply, service_pb2.ApplyResponse)
+        self.assertEqual(caught.exception.reason, "EDIT_REFUSED")
+        with self.assertRaises(clearance.InvalidRequest) as caught:
+            self.door.call("Scenes/Watch", request, service_pb2.CollideResponse)
+        self.assertEqual(caught.exception.field, "rpc")
 
     def test_errors_name_reason_and_field(self) -> None:
         with self.assertRaises(clearance.NotFound) as caught:

@@ -77,14 +77,12 @@ impl SharedMemory {
 
 impl From<ClientError> for Refusal {
     fn from(error: ClientError) -> Self {
-        match error {
-            ClientError::Refused(refusal) => Self {
-                code: Code::from(refusal.code as i32),
-                reason: refusal.reason,
-                field: refusal.field,
-                message: refusal.message,
-            },
-            other => panic!("{other}"),
+        let ClientError::Refused(refusal) = error else { panic!("{error}") };
+        Self {
+            code: Code::from(refusal.code as i32),
+            reason: refusal.reason,
+            field: refusal.field,
+            message: refusal.message,
         }
     }
 }

@@ -15,9 +15,10 @@ from __future__ import annotations
 import ctypes
 import os
 import time
-from typing import Any, Iterator, Mapping, Optional, Sequence
+from typing import Any, Iterator, Mapping, Optional, Sequence, TypeVar
 
 import numpy as np
+from google.protobuf.message import Message
 
 from .errors import (
     ClearanceError,
@@ -36,13 +37,15 @@ try:
 except ImportError as error:  # pragma: no cover
     raise ImportError("clearance.shared_memory needs iceoryx2: pip install './clients/python[shared-memory]'") from error
 
+Response = TypeVar("Response", bound=Message)
+
 DEFAULT_NAME = "clearance"
 DEFAULT_ROOT = "/tmp/clearance"
 
 #: While it waits, a client looks this often whether the daemon is still alive, seconds.
 _ALIVE = 0.25
 
-_STATES, _MOTIONS, _PATH, _COLLIDE, _DISTANCE, _RAYS = range(1, 7)
+_STATES, _MOTIONS, _PATH, _COLLIDE, _DISTANCE, _RAYS, _CALL = range(1, 8)
 _EPOCH, _CUT_OFF, _ACCURACY, _MAX_PAIRS, _LAYERS, _MASK, _RESOLUTION, _MAX_STATES, _BUDGET, _DISREGARD = (
     1 << bit for bit in range(10)
 )
@@ -219,6 +222,15 @@ class Client:
         }
         return self._ask(_RAYS, scene, len(columns["origins"]), columns, {**options, "mode": _RAY_MODES[mode]})
 
+    def call(self, rpc: str, request: Message, response: type[Response], timeout: float = 10.0) -> Response:
+        """Calls any rpc that answers with one message by its name: `call("Queries/Overlap", request, OverlapResponse)`.
+
+        The messages are those of `clearance.v1`.
+        """
+        body = np.frombuffer(request.SerializeToString(), dtype="u1")
+        answer = self._ask(_CALL, None, 0, {"rpc": rpc, "message": body}, {"timeout": timeout})
+        return response.FromString(answer["response"].tobytes())
+
     def _subjects(self, question: int, scene: str, given: dict[str, Any]) -> Answer:
         options = dict(given)
         bodies, poses, shape = (options.pop(name, None) for name in ("bodies", "poses", "shape"))
@@ -243,7 +255,7 @@ class Client:
         columns["subject_kinds"] = np.full(count, kind, dtype="u1")
         return self._ask(question, scene, count, columns, options)
 
-    def _ask(self, question: int, scene: str, items: int, columns: dict[str, Any], options: dict[str, Any]) -> Answer:
+    def _ask(self, question: int, scene: Optional[str], items: int, columns: dict[str, Any], options: dict[str, Any]) -> Answer:
         timeout = float(options.pop("timeout", 10.0))
         header = np.zeros((), dtype=_REQUEST)
         nonce = os.urandom(16)
@@ -253,7 +265,7 @@ class Client:
         header["client"] = np.frombuffer(self._id, dtype="u1")
         header["question"], header["items"] = question, items
         header["timeout_ns"] = max(1, int(timeout * 1e9))
-        columns = {"scene": scene, **columns, **_described(header, options)}
+        columns = {**({} if scene is None else {"scene": scene}), **columns, **_described(header, options)}
         message = _message(header, columns)
         if len(message) > self._most:
             details = {"clearance-limit": "max_shared_memory_request_bytes", "clearance-reason": "LIMIT_EXCEEDED"}
