@@ -27,7 +27,7 @@ mod workers;
 pub use admission::Permit;
 pub use assets::{ContentHash, NotAHash, Stored, Upload};
 pub use contact_watch::ContactWatch;
-pub use deadline::Patience;
+pub use deadline::{Patience, Waiting};
 pub use error::ServiceError;
 pub use library::{Library, MeshReading, UnusableMesh};
 pub use mesh_cards::{MeshCardRequest, TimedMeshCard};

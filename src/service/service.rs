@@ -10,7 +10,7 @@ use super::ServiceError;
 use super::admission::{Admission, Permit};
 use super::assets::{ContentHash, Stored, Upload};
 use super::contact_watch::ContactWatch;
-use super::deadline::{Deadline, Patience, Stop};
+use super::deadline::{Deadline, Patience, Stop, Waiting};
 use super::library::{Library, UnusableMesh};
 use super::mesh_cards::{MeshCardRequest, TimedMeshCard};
 use super::pose_feed::PoseFeed;
@@ -295,8 +295,27 @@ impl Service {
             .await
     }
 
-    /// Asks a scene on the calling thread, for questions that take less time than to hand them over. `None`: the revision
-    /// is still to come, and [`Service::ask`] waits for it.
+    /// Asks a scene on the calling thread, for questions that take less time than to hand them over. Waits for a revision
+    /// that is still to come.
+    ///
+    /// # Errors
+    /// As for [`Service::ask`].
+    pub async fn ask_at_once<T>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError>,
+    ) -> Result<T, ServiceError> {
+        self.check_open()?;
+        let _permit = self.queries.enter()?;
+        let deadline = self.deadline(patience)?;
+        let found = self.scenes.get(&target.scene)?.find(target.revision, deadline).await?;
+        let (stop, _waiting) = Stop::at(deadline);
+        let view = View::on_one_thread(found, stop, &self.limits);
+        caught(|| question(&view))
+    }
+
+    /// The same without waiting: `None` where the revision is still to come.
     pub fn ask_here<T>(
         &self,
         target: &Target,
@@ -316,6 +335,33 @@ impl Service {
         let (stop, _waiting) = Stop::at(deadline);
         let view = View::on_one_thread(found, stop, &self.limits);
         Some(caught(|| question(&view)))
+    }
+
+    /// Asks a scene on the threads that answer questions; `then` gets the answer there, which spares a caller that is no
+    /// task the way back. Dropping what is returned stops the work. `None`: the revision is still to come, and
+    /// [`Service::ask`] waits for it.
+    ///
+    /// # Errors
+    /// A scene or revision that is not there, or a cap: `then` is not called.
+    pub fn ask_then<T>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+        then: impl FnOnce(Result<T, ServiceError>) + Send + 'static,
+    ) -> Result<Option<Waiting>, ServiceError> {
+        self.check_open()?;
+        let permit = self.queries.enter()?;
+        let deadline = self.deadline(patience)?;
+        let Some(found) = self.scenes.get(&target.scene)?.find_now(target.revision)? else { return Ok(None) };
+        let (stop, waiting) = Stop::at(deadline);
+        let view = View::new(found, stop.clone(), &self.limits);
+        let work = move || {
+            let _permit = permit;
+            if stop.now() { Err(ServiceError::DeadlineExceeded) } else { question(&view) }
+        };
+        self.workers.answer_then(work, then);
+        Ok(Some(waiting))
     }
 
     /// Watches the contacts of a scene. `question` is told the caps and the snapshot that comes first.

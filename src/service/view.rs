@@ -188,7 +188,10 @@ impl View {
     fn answer_each<B: ItemBatch>(&self, batch: &B, context: &Context) -> Result<Answers<B::Item>, ServiceError> {
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
-        let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
+        let run = |part: Range<usize>| {
+            let glances = self.stop.glances();
+            batch.run(part, &|| glances.now())
+        };
         let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
         if answers.out_of_time && answers.answered == 0 {
@@ -200,7 +203,10 @@ impl View {
     fn answer(&self, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
-        let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
+        let run = |part: Range<usize>| {
+            let glances = self.stop.glances();
+            question.run(part, &|| glances.now())
+        };
         let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
         let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);

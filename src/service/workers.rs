@@ -48,6 +48,15 @@ impl Workers {
         self.pool.spawn(move || drop(sender.send(caught(work))));
         receiver.await.unwrap_or_else(|_| Err(incident("a worker ended without a result")))
     }
+
+    /// Does `work` on the pool, and there what follows from its result.
+    pub fn answer_then<T>(
+        &self,
+        work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
+        then: impl FnOnce(Result<T, ServiceError>) + Send + 'static,
+    ) {
+        self.pool.spawn(move || then(caught(work)));
+    }
 }
 
 /// Does `work` on a thread that may take its time.

@@ -33,7 +33,7 @@ use crate::transports::wire::v1::scenes_server::ScenesServer;
 use crate::transports::wire::v1::server_server::ServerServer;
 
 /// How much one connection may send before it has to wait, bytes: the default of 64 KiB caps long links.
-const WINDOW: u32 = 8 << 20;
+pub(super) const WINDOW: u32 = 8 << 20;
 /// Calls of one connection at a time.
 const CALLS_PER_CONNECTION: u32 = 256;
 /// A connection without traffic is asked for a sign of life this often, and closed when none comes.

@@ -78,6 +78,12 @@ fn refusal(code: u32, sections: &Sections<'_>) -> Result<Refusal, Malformed> {
 }
 
 impl Reply {
+    /// Bytes of the whole message.
+    #[must_use]
+    pub fn message_bytes(&self) -> usize {
+        self.message.len()
+    }
+
     /// Which life of the scene was asked.
     #[must_use]
     pub fn epoch(&self) -> Epoch {
