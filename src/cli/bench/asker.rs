@@ -44,7 +44,7 @@ impl Last {
 pub(super) struct InProcess {
     service: Arc<Service>,
     runtime: Runtime,
-    answer: Option<Answer>,
+    free: Vec<bool>,
 }
 
 /// Batches of no more states than this are answered where they are asked, as the doors do it.
@@ -53,7 +53,7 @@ const FEW: usize = 8;
 impl InProcess {
     pub fn new(service: &Arc<Service>) -> Result<Self, Failed> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failed::failure)?;
-        Ok(Self { service: Arc::clone(service), runtime, answer: None })
+        Ok(Self { service: Arc::clone(service), runtime, free: Vec::new() })
     }
 }
 
@@ -69,12 +69,12 @@ pub(super) async fn asked(service: &Service, batch: &Batch) -> Result<Answer, Se
 
 impl Asker for InProcess {
     fn ask(&mut self, batch: &Batch) -> Result<(), Failed> {
-        self.answer = Some(self.runtime.block_on(asked(&self.service, batch)).map_err(Failed::failure)?);
+        let answer = self.runtime.block_on(asked(&self.service, batch)).map_err(Failed::failure)?;
+        self.free = answer.items.iter().map(|item| item.verdict == Verdict::Free).collect();
         Ok(())
     }
 
     fn last(&self) -> Last {
-        let items = self.answer.iter().flat_map(|answer| &answer.items);
-        Last { free: items.map(|item| item.verdict == Verdict::Free).collect(), ..Last::default() }
+        Last { free: self.free.clone(), ..Last::default() }
     }
 }
