@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use prost::bytes::Bytes;
 use tokio::runtime::Runtime;
 
 use super::super::exit_code::Failed;
@@ -28,15 +27,6 @@ pub(super) struct Last {
     pub sent: usize,
     /// Bytes that came back.
     pub came: usize,
-}
-
-impl Last {
-    /// From the bytes of a bulk answer.
-    pub fn of_bulk(verdicts: &Bytes, sent: usize, came: usize) -> Self {
-        use crate::transports::wire::v1;
-        let free = |&verdict: &u8| i32::from(verdict) == v1::Verdict::Free as i32;
-        Self { free: verdicts.iter().map(free).collect(), sent, came }
-    }
 }
 
 /// Without any door: the library within the caller's own process.

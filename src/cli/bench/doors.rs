@@ -4,18 +4,14 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use prost::Message;
 use tokio::runtime::{Handle, Runtime};
-use tonic::transport::{Channel, Endpoint};
 
 use super::super::exit_code::Failed;
 use super::asker::{Asker, Last};
 use super::workload::Batch;
 use crate::service::Service;
 use crate::transports::echo::Echo;
-use crate::transports::grpc::{self, GrpcEcho};
-use crate::transports::wire::v1;
-use crate::transports::wire::v1::queries_client::QueriesClient;
+use crate::transports::grpc::{self, BulkClient, BulkVerdicts, GrpcEcho};
 
 /// A door with what is measured through it.
 pub(super) struct OpenDoor {
@@ -63,43 +59,31 @@ pub(super) fn serve_grpc(service: &Arc<Service>, runtime: &Handle, address: &str
     Ok(address)
 }
 
-/// A connection as clients make them.
-pub(super) async fn connected(address: &str) -> Result<QueriesClient<Channel>, Failed> {
-    const WINDOW: u32 = 8 << 20;
-    let url = if address.starts_with("unix:") { address.to_owned() } else { format!("http://{address}") };
-    let endpoint = Endpoint::from_shared(url).map_err(Failed::failure)?;
-    let endpoint = endpoint.tcp_nodelay(true).initial_stream_window_size(WINDOW).initial_connection_window_size(WINDOW);
-    let channel = endpoint.connect().await.map_err(Failed::failure)?;
-    Ok(QueriesClient::new(channel).max_decoding_message_size(usize::MAX))
-}
-
 /// One call after the other.
 struct Unary {
-    queries: QueriesClient<Channel>,
+    client: BulkClient,
     runtime: Runtime,
     sent: usize,
-    answer: v1::CheckStatesResponse,
+    answer: BulkVerdicts,
 }
 
 impl Unary {
     fn new(address: &str) -> Result<Self, Failed> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failed::failure)?;
-        let queries = runtime.block_on(connected(address))?;
-        Ok(Self { queries, runtime, sent: 0, answer: v1::CheckStatesResponse::default() })
+        let client = runtime.block_on(BulkClient::connect(address)).map_err(Failed::daemon)?;
+        Ok(Self { client, runtime, sent: 0, answer: BulkVerdicts::default() })
     }
 }
 
 impl Asker for Unary {
     fn ask(&mut self, batch: &Batch) -> Result<(), Failed> {
-        let call = self.queries.check_states(batch.message.clone());
-        self.answer = self.runtime.block_on(call).map_err(Failed::failure)?.into_inner();
-        self.sent = batch.message.encoded_len();
+        self.answer = self.runtime.block_on(self.client.check_states(&batch.message)).map_err(Failed::daemon)?;
+        self.sent = batch.message.message_bytes();
         Ok(())
     }
 
     fn last(&self) -> Last {
-        let bulk = self.answer.answer.as_ref().and_then(|answer| answer.bulk.clone()).unwrap_or_default();
-        Last::of_bulk(&bulk.verdicts, self.sent, self.answer.encoded_len())
+        Last { free: self.answer.free(), sent: self.sent, came: self.answer.message_bytes() }
     }
 }
 
@@ -108,7 +92,6 @@ pub(super) mod shared_memory {
     //! Through memory that both sides see.
 
     use super::*;
-    use crate::transports::shared_memory::layout::kind;
     use crate::transports::shared_memory::{Ask, Client, Config, Options, Reply, SharedMemoryEcho};
 
     pub fn open(service: &Arc<Service>, runtime: &Handle, folder: &Path, spin: Duration) -> Result<OpenDoor, Failed> {
@@ -158,9 +141,8 @@ pub(super) mod shared_memory {
         }
 
         fn last(&self) -> Last {
-            let verdicts = self.answer.as_ref().and_then(|answer| answer.bytes(kind::VERDICTS)).unwrap_or_default();
-            let came = self.answer.as_ref().map_or(0, Reply::message_bytes);
-            Last::of_bulk(&prost::bytes::Bytes::copy_from_slice(verdicts), self.sent, came)
+            let free = self.answer.as_ref().map(Reply::free).unwrap_or_default();
+            Last { free, sent: self.sent, came: self.answer.as_ref().map_or(0, Reply::message_bytes) }
         }
     }
 }

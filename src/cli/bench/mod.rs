@@ -2,6 +2,7 @@
 
 mod asker;
 mod doors;
+mod flags;
 mod placement;
 mod report;
 mod sampling;
@@ -9,29 +10,4 @@ mod throughput;
 mod transports;
 mod workload;
 
-use std::io::Write;
-
-use super::exit_code::Failed;
-
-/// Flags of `clearance bench`.
-#[derive(clap::Args, Clone, Debug)]
-pub struct Bench {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(clap::Subcommand, Clone, Debug)]
-enum What {
-    /// Each door against the same work in this process, and against its bare stack.
-    Transports(transports::Transports),
-}
-
-/// Measures, and writes a table.
-///
-/// # Errors
-/// A door or stack that cannot be opened, or output that cannot be written.
-pub fn run(bench: &Bench, output: &mut dyn Write) -> Result<(), Failed> {
-    match &bench.what {
-        What::Transports(flags) => transports::run(flags, output),
-    }
-}
+pub use flags::{Bench, run};

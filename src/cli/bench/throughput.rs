@@ -6,15 +6,13 @@ use std::time::{Duration, Instant};
 
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
-use tokio_stream::StreamExt;
 
 use super::super::exit_code::Failed;
 use super::asker::asked;
-use super::doors::{connected, serve_grpc};
+use super::doors::serve_grpc;
 use super::workload::{Batch, Workload};
 use crate::service::Service;
-use crate::transports::wire::v1;
-use crate::transports::wire::v1::query_stream_request::Question;
+use crate::transports::grpc::BulkClient;
 
 /// States of one batch.
 pub(super) const ITEMS: usize = 1024;
@@ -61,7 +59,7 @@ pub(super) fn measure(
     let time = Duration::from_secs_f64(seconds / 6.0);
     let address = serve_grpc(service, runtime, "127.0.0.1:0")?;
     let client = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failed::failure)?;
-    let queries = client.block_on(connected(&address))?;
+    let connection = client.block_on(BulkClient::connect(&address)).map_err(Failed::daemon)?;
     let way = |way, target| Throughput { way, rounds: Vec::new(), target };
     let mut here = way("within the process", None);
     let mut stream = way("gRPC, stream of batches", Some(0.7));
@@ -75,9 +73,9 @@ pub(super) fn measure(
     for _ in 0..ROUNDS {
         let run = client.block_on(within(service, &batch, time))?;
         here.rounds.push(per_second(&run));
-        let run = client.block_on(streamed(queries.clone(), &batch, time))?;
+        let run = client.block_on(streamed(&connection, &batch, time))?;
         stream.rounds.push(per_second(&run));
-        let run = client.block_on(called(&queries, &batch, time))?;
+        let run = client.block_on(called(&connection, &batch, time))?;
         unary.rounds.push(per_second(&run));
         #[cfg(feature = "shared-memory")]
         shared.rounds.push(per_second(&through_shared_memory((&name, folder), &batch, time)?));
@@ -122,46 +120,17 @@ async fn within(service: &Arc<Service>, batch: &Batch, time: Duration) -> Result
     .await
 }
 
-type Queries = v1::queries_client::QueriesClient<tonic::transport::Channel>;
-
-async fn called(queries: &Queries, batch: &Batch, time: Duration) -> Result<Run, Failed> {
+async fn called(client: &BulkClient, batch: &Batch, time: Duration) -> Result<Run, Failed> {
     kept_busy(time, || {
-        let (mut queries, message) = (queries.clone(), batch.message.clone());
-        async move { queries.check_states(message).await.map(drop).map_err(|status| status.to_string()) }
+        let (client, message) = (client.clone(), batch.message.clone());
+        async move { client.check_states(&message).await.map(drop).map_err(|error| error.to_string()) }
     })
     .await
 }
 
-async fn streamed(mut queries: Queries, batch: &Batch, time: Duration) -> Result<Run, Failed> {
-    let (sender, receiver) = tokio::sync::mpsc::channel(UNDER_WAY);
-    let question = |id| {
-        let question = Some(Question::CheckStates(batch.message.clone()));
-        v1::QueryStreamRequest { id, question }
-    };
-    let mut asked = 0;
-    for _ in 0..UNDER_WAY {
-        sender.send(question(asked)).await.map_err(Failed::failure)?;
-        asked += 1;
-    }
+async fn streamed(client: &BulkClient, batch: &Batch, time: Duration) -> Result<Run, Failed> {
     let begun = Instant::now();
-    let sent = tokio_stream::wrappers::ReceiverStream::new(receiver);
-    let mut answers = queries.query_stream(sent).await.map_err(Failed::failure)?.into_inner();
-    let mut sender = Some(sender);
-    let mut batches = 0;
-    while let Some(answer) = answers.next().await {
-        use v1::query_stream_response::Outcome;
-        match answer.map_err(Failed::failure)?.outcome {
-            Some(Outcome::CheckStates(_)) => batches += 1,
-            other => return Err(Failed::failure(format!("a stream of batches answered {other:?}"))),
-        }
-        if begun.elapsed() > time {
-            // The end of the questions is the end of the answers, once all are there.
-            sender = None;
-        } else if let Some(sender) = &sender {
-            sender.send(question(asked)).await.map_err(Failed::failure)?;
-            asked += 1;
-        }
-    }
+    let batches = client.stream(&batch.message, UNDER_WAY, || begun.elapsed() < time).await.map_err(Failed::daemon)?;
     Ok(Run { batches, seconds: begun.elapsed().as_secs_f64() })
 }
 

@@ -20,6 +20,7 @@ use crate::app::defaults;
 use crate::limits::Limits;
 use crate::service::{Config, Service};
 use crate::transports::echo::{Echo, Parcel, SocketEcho};
+use crate::transports::grpc::Client;
 
 /// Flags of `clearance bench transports`.
 #[derive(clap::Args, Clone, Debug)]
@@ -57,7 +58,9 @@ pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Fail
     let service = Service::new(&Config { threads: 0, limits: Limits::default() }).map_err(Failed::failure)?;
     placement.as_daemon()?;
     let runtime = threads()?;
-    let probe = runtime.block_on(Workload::probe(&service))?;
+    let address = doors::serve_grpc(&service, runtime.handle(), "127.0.0.1:0")?;
+    let client = runtime.block_on(Client::connect(&address)).map_err(Failed::daemon)?;
+    let probe = runtime.block_on(Workload::probe(&client))?;
     let mut doors = doors::open(&service, runtime.handle(), folder.path(), Duration::from_micros(flags.spin))?;
     let (mut tcp, mut unix) = bare_sockets(folder.path())?;
     placement.as_caller()?;
@@ -78,7 +81,7 @@ pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Fail
     }
     placement.anywhere()?;
     let unplaced = threads()?;
-    let planner = runtime.block_on(Workload::planner(&service))?;
+    let planner = runtime.block_on(Workload::planner(&client))?;
     let measured = throughput::measure(&service, unplaced.handle(), folder.path(), &planner, flags.seconds)?;
     report.throughput(&measured)?;
     unplaced.shutdown_background();

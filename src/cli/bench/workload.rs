@@ -10,9 +10,8 @@ use crate::geometry::{Pose, Quaternion, Shape, Vec3};
 use crate::query::{CheckStates, Context, Mode, Wants};
 use crate::robot::{LinkOptions, MeshUse, ModelOptions};
 use crate::scene::NewBody;
-use crate::service::{ContentHash, RobotDescription, Service, ServiceError, Target};
-use crate::transports::requests;
-use crate::transports::wire::{to_proto, v1};
+use crate::service::{RobotDescription, Target};
+use crate::transports::grpc::{BulkStates, Client, ClientError, RemoteEdit};
 
 /// The robot's name in every scene.
 const ROBOT: &str = "arm";
@@ -52,20 +51,16 @@ pub(super) struct Batch {
     /// Numbers of one state.
     pub width: usize,
     /// As gRPC and zenoh take it, positions and answer in bulk.
-    pub message: v1::CheckStatesRequest,
+    pub message: BulkStates,
 }
 
 impl Workload {
     /// A UR5 with a gripper before a shelf, as a planner asks about it.
-    pub async fn planner(service: &Arc<Service>) -> Result<Self, Failed> {
+    pub async fn planner(client: &Client) -> Result<Self, Failed> {
         let files = sample::robot();
         let mut meshes = BTreeMap::new();
         for (name, mesh) in &files.meshes {
-            let hash = ContentHash::of(mesh);
-            let mut upload = service.begin_upload(hash, mesh.len() as u64).map_err(Failed::failure)?;
-            upload.push(mesh).map_err(Failed::failure)?;
-            service.finish_upload(upload).await.map_err(Failed::failure)?;
-            meshes.insert(name.clone(), hash);
+            meshes.insert(name.clone(), client.put_asset(mesh).await.map_err(Failed::daemon)?);
         }
         let options = ModelOptions::uniform(LinkOptions { mesh: MeshUse::Hull, ..LinkOptions::default() });
         let description = RobotDescription { urdf: files.urdf, srdf: files.srdf, meshes, options };
@@ -77,11 +72,11 @@ impl Workload {
         let objects = scenes[index].objects.iter().map(|o| NewBody::new(o.name.clone(), o.shape.clone(), o.pose));
         let own = states.into_iter().filter_map(|line| line.state.ok()).filter(|state| state.scene == index);
         let states = own.map(|state| state.positions).collect();
-        Self::with(service, name, description, objects.collect(), states).await.map_err(Failed::failure)
+        Self::with(client, name, &description, objects.collect(), states).await.map_err(Failed::daemon)
     }
 
     /// A robot of which next to nothing has to be looked at.
-    pub async fn probe(service: &Arc<Service>) -> Result<Self, Failed> {
+    pub async fn probe(client: &Client) -> Result<Self, Failed> {
         let description = RobotDescription {
             urdf: PROBE.to_owned(),
             srdf: None,
@@ -92,30 +87,21 @@ impl Workload {
         let pose = Pose::new(Vec3::new(0.6, 0.0, 0.6), Quaternion::IDENTITY).map_err(Failed::failure)?;
         let states = (0..PROBE_STATES).map(|i| (0..6).map(|joint| libm::sin((i * 6 + joint) as f64)).collect());
         let block = vec![NewBody::new("block", Arc::new(shape), pose)];
-        Self::with(service, "probe", description, block, states.collect()).await.map_err(Failed::failure)
+        Self::with(client, "probe", &description, block, states.collect()).await.map_err(Failed::daemon)
     }
 
     async fn with(
-        service: &Arc<Service>,
+        client: &Client,
         scene: &str,
-        description: RobotDescription,
+        description: &RobotDescription,
         bodies: Vec<NewBody>,
         states: Vec<Vec<f64>>,
-    ) -> Result<Self, ServiceError> {
-        let robot = service.load_robot(move || Ok(description)).await?;
-        let create = v1::CreateSceneRequest { name: scene.to_owned(), ..v1::CreateSceneRequest::default() };
-        requests::create_scene(service, &create)?;
-        let arm = v1::AddRobot {
-            name: ROBOT.to_owned(),
-            model: robot.id.to_string(),
-            base: Some(to_proto::pose(&Pose::identity())),
-            ..v1::AddRobot::default()
-        };
-        let bodies = bodies.iter().map(|body| v1::edit::Kind::AddBody(to_proto::add_body(body)));
-        let edits = std::iter::once(v1::edit::Kind::AddRobot(arm)).chain(bodies);
-        let edits = edits.map(|kind| v1::Edit { kind: Some(kind) }).collect();
-        let apply = v1::ApplyRequest { scene: scene.to_owned(), edits, ..v1::ApplyRequest::default() };
-        requests::apply(service, apply, None).await?;
+    ) -> Result<Self, ClientError> {
+        let model = client.load_robot(description).await?.id;
+        client.create_scene(scene).await?;
+        let arm = RemoteEdit::AddRobot { name: ROBOT.to_owned(), model, base: Pose::identity() };
+        let edits: Vec<RemoteEdit> = std::iter::once(arm).chain(bodies.into_iter().map(RemoteEdit::AddBody)).collect();
+        client.apply(scene, &edits).await?;
         Ok(Self { target: Target { scene: scene.to_owned(), ..Target::default() }, states })
     }
 
@@ -125,10 +111,7 @@ impl Workload {
         let positions = self.states.iter().cycle().take(items).flatten().copied().collect();
         let context = Context { wants: Wants::VERDICT, ..Context::default() };
         let question = CheckStates { robot: ROBOT.to_owned(), positions, mode: Mode::All, context };
-        let mut message = to_proto::check_states_request(&self.target, &question);
-        if let Some(context) = &mut message.context {
-            context.answer_form = v1::AnswerForm::Bulk.into();
-        }
+        let message = BulkStates::new(&self.target, &question);
         Batch { items, target: self.target.clone(), question: Arc::new(question), width, message }
     }
 }

@@ -24,7 +24,7 @@ use crate::transports::wire::{from_proto, to_proto, v1};
 /// Bytes of a file in one message of an upload.
 const CHUNK: usize = 1 << 20;
 /// How much the server may send before it has to wait, bytes.
-const WINDOW: u32 = 8 << 20;
+pub(super) const WINDOW: u32 = 8 << 20;
 /// Answers are as large as the daemon cares to send.
 const LARGEST_ANSWER: usize = usize::MAX;
 /// A daemon that does not take the connection by then is not there.

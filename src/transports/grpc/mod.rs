@@ -6,6 +6,7 @@ mod access;
 mod address;
 mod assets;
 mod bucket;
+mod bulk;
 mod certificate;
 mod client;
 mod clients;
@@ -33,6 +34,7 @@ mod tokens;
 mod web;
 
 pub use access::Scope;
+pub use bulk::{BulkClient, BulkStates, BulkVerdicts};
 pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
 pub use credentials::{Credentials, Identity};
 pub use door::{BindError, Config, Listening};
