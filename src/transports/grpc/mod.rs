@@ -32,8 +32,8 @@ mod tokens;
 mod web;
 
 pub use access::Scope;
-pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
-pub use credentials::{Credentials, Identity};
+pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer, Way};
+pub use credentials::{Bearer, Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use status::{query_error, status_of};
 pub use tls::{TlsError, TlsFiles};
