@@ -85,7 +85,7 @@ impl Workload {
         };
         let shape = Shape::cuboid(Vec3::new(0.2, 0.2, 0.2)).map_err(Failed::failure)?;
         let pose = Pose::new(Vec3::new(0.6, 0.0, 0.6), Quaternion::IDENTITY).map_err(Failed::failure)?;
-        let states = (0..PROBE_STATES).map(|i| (0..6).map(|joint| libm::sin((i * 6 + joint) as f64)).collect());
+        let states = (0..PROBE_STATES).map(|i| (0..6).map(|joint| ((i * 6 + joint) as f64).sin()).collect());
         let block = vec![NewBody::new("block", Arc::new(shape), pose)];
         Self::with(client, "probe", &description, block, states.collect()).await.map_err(Failed::daemon)
     }

@@ -35,8 +35,8 @@ mod web;
 
 pub use access::Scope;
 pub use bulk::{BulkClient, BulkStates, BulkVerdicts};
-pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer};
-pub use credentials::{Credentials, Identity};
+pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer, Way};
+pub use credentials::{Bearer, Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use echo::GrpcEcho;
 pub use status::{query_error, status_of};
