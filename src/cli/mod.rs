@@ -9,6 +9,8 @@ mod daemon_flags;
 #[cfg(feature = "grpc")]
 mod demo;
 mod exit_code;
+#[cfg(feature = "grpc")]
+mod folder;
 mod json_field;
 mod pairs;
 mod robot_files;

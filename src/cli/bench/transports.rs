@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::net::TcpStream;
 use std::os::unix::net::UnixStream;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use tokio::runtime::Runtime;
 
 use super::super::exit_code::Failed;
+use super::super::folder::Folder;
 use super::asker::{Asker, InProcess};
 use super::doors::{self, OpenDoor};
 use super::placement::Placement;
@@ -53,7 +54,7 @@ const WARM: usize = 3;
 /// # Errors
 /// A door that cannot be opened, answers that differ, or output that cannot be written.
 pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Failed> {
-    let (folder, placement) = (tempfile_folder()?, Placement::new()?);
+    let (folder, placement) = (Folder::new()?, Placement::new()?);
     // The threads that answer questions run anywhere.
     let service = Service::new(&Config { threads: 0, limits: Limits::default() }).map_err(Failed::failure)?;
     placement.as_daemon()?;
@@ -98,28 +99,6 @@ fn bare_sockets(folder: &Path) -> Result<(SocketEcho<TcpStream>, SocketEcho<Unix
     let tcp = SocketEcho::tcp().map_err(Failed::failure)?;
     let unix = SocketEcho::unix(&folder.join("bare.sock")).map_err(Failed::failure)?;
     Ok((tcp, unix))
-}
-
-/// A folder for sockets that goes with its owner.
-fn tempfile_folder() -> Result<Folder, Failed> {
-    let path = std::env::temp_dir().join(format!("clearance-bench-{}", std::process::id()));
-    std::fs::create_dir_all(&path).map_err(Failed::failure)?;
-    Ok(Folder(path))
-}
-
-struct Folder(PathBuf);
-
-impl Folder {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // What is left of it is in the system's folder for such things.
-        _ = std::fs::remove_dir_all(&self.0);
-    }
 }
 
 /// A door, the same work within the process and the bare stack, in turn.

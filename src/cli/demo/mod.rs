@@ -1,5 +1,6 @@
 //! `clearance demo`: a daemon, a real robot, real scenes, real questions, and what an edit changes.
 
+mod doors;
 mod report;
 mod tour;
 

@@ -2,16 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::time::Instant;
 
 use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
 use super::super::exit_code::Failed;
+use super::super::folder::Folder;
 use super::super::sample;
 use super::super::scene_file::{SceneEntry, StateLine};
 use super::super::state_line::{AnswerLine, Names};
 use super::super::words;
+use super::doors::Doors;
 use super::report::{Cast, HEADINGS, row};
 
 use crate::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings, stop_signal};
@@ -39,9 +40,8 @@ const ROBOT: &str = "ur5";
 const ROWS: usize = 6;
 /// States on the straight line from start to goal.
 const LINE: usize = 200;
-/// States of a request when throughput is measured, and requests.
+/// States of a large question.
 const BATCH: usize = 1024;
-const BATCHES: usize = 8;
 
 /// Runs the tour against a daemon of its own.
 ///
@@ -56,17 +56,21 @@ pub fn run(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
 
 async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
     let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
-    // The name of the shared-memory door is one for the whole machine: it stays with the daemon that serves.
-    let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
+    // A name and a folder of its own: those of the defaults stay with the daemon that serves.
+    let folder = Folder::new()?;
+    let name = Some(format!("demo-{}", std::process::id()));
+    let root = Some(folder.path().to_owned());
+    let shared_memory = SharedMemorySettings { name, root, ..SharedMemorySettings::default() };
     let config = Settings { grpc, shared_memory, ..Settings::default() }.resolve().map_err(Failed::failure)?;
     let daemon = Daemon::build(&config).await.map_err(Failed::failure)?;
-    let door = daemon.doors().into_iter().next().ok_or_else(|| Failed::failure("the daemon has no door"))?;
-    let address = door.address.to_string();
+    let doors = Doors { open: daemon.doors(), folder: folder.path().to_owned() };
+    let grpc = doors.open.iter().find(|door| door.kind == "grpc");
+    let address = grpc.ok_or_else(|| Failed::failure("the daemon has no gRPC door"))?.address.clone();
     let (stop, told_to_stop) = oneshot::channel::<()>();
     let serving = tokio::spawn(daemon.run(async { told_to_stop.await.unwrap_or_default() }));
 
     let client = Client::connect(&address).await.map_err(Failed::daemon)?;
-    let mut tour = Tour { client, output, json: demo.json };
+    let mut tour = Tour { client, doors, output, json: demo.json };
     tour.daemon(&address).await?;
     tour.visit_all().await?;
     if demo.keep {
@@ -80,6 +84,7 @@ async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> 
 
 struct Tour<'a> {
     client: Client,
+    doors: Doors,
     output: &'a mut dyn Write,
     json: bool,
 }
@@ -129,7 +134,7 @@ impl Tour<'_> {
         }
         self.walk_straight(&places[1]).await?;
         self.edit(&places[0]).await?;
-        self.measure(&places[1]).await
+        self.compare_doors(&places[1]).await
     }
 
     async fn upload_robot(&mut self) -> Result<RemoteRobot, Failed> {
@@ -262,23 +267,34 @@ impl Tour<'_> {
         Ok(())
     }
 
-    /// States a second through gRPC, on this machine, now.
-    async fn measure(&mut self, place: &Place) -> Result<(), Failed> {
-        let cycle = place.states.iter().map(|(_, q)| q).cycle();
-        let positions: Vec<f64> = cycle.take(BATCH).flatten().copied().collect();
-        let distance = Wants { depth: true, ..Wants::VERDICT };
+    /// The same states through every door: the answers are equal, and each door takes its time.
+    async fn compare_doors(&mut self, place: &Place) -> Result<(), Failed> {
+        let target = Target { scene: place.name.clone(), ..Target::default() };
+        let width = place.states.first().map_or(0, |(_, positions)| positions.len());
         self.tell("")?;
-        for (what, wants) in [("verdict", Wants::VERDICT), ("distance", distance)] {
-            let start = Instant::now();
-            for _ in 0..BATCHES {
-                self.ask(place, Rule::Latest, positions.clone(), (wants, Mode::All)).await?;
+        for items in [1, BATCH] {
+            let cycle = place.states.iter().map(|(_, q)| q).cycle();
+            let positions: Vec<f64> = cycle.take(items).flatten().copied().collect();
+            let context = Context { wants: Wants::VERDICT, ..Context::default() };
+            let question = CheckStates { robot: ROBOT.to_owned(), positions, mode: Mode::All, context };
+            let through = self.doors.ask(&target, (&question, width)).await?;
+            for one in &through {
+                let microseconds = one.median * 1e6;
+                let line = format!(
+                    "door       {:<14} {items:>5} states {microseconds:>8.0} us, {:>7.0} states a second",
+                    one.door,
+                    items as f64 / one.median
+                );
+                let object = json!({"step": "door", "door": one.door, "states": items, "microseconds": microseconds});
+                self.say(&line, &object)?;
             }
-            let per_second = (BATCH * BATCHES) as f64 / start.elapsed().as_secs_f64();
-            let line = format!(
-                "speed      {what:<8} {per_second:>9.0} states a second through gRPC, {BATCH} states a request ({})",
-                place.title
-            );
-            self.say(&line, &json!({"step": "speed", "want": what, "batch": BATCH, "states_per_second": per_second}))?;
+            let equal = through.iter().all(|one| one.free == through[0].free && one.free.len() == items);
+            if !equal {
+                return Err(Failed::failure("the doors answer differently"));
+            }
+            let free = through.first().map_or(0, |one| one.free.iter().filter(|free| **free).count());
+            let line = format!("           the {} doors agree: {free} of {items} free", through.len());
+            self.say(&line, &json!({"step": "doors", "doors": through.len(), "states": items, "free": free}))?;
         }
         Ok(())
     }
