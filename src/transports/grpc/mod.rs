@@ -32,7 +32,9 @@ mod tokens;
 mod web;
 
 pub use access::Scope;
-pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer, Way};
+pub use client::{
+    Client, ClientError, Messages, Refusal, RemoteAttachment, RemoteEdit, RemoteOverlay, RemoteRobot, RemoteServer, Way,
+};
 pub use credentials::{Bearer, Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use status::{query_error, status_of};
