@@ -1,8 +1,12 @@
 //! What clients in every language are held to: recorded questions with the canonical bytes of their answers.
 
+mod casts;
 #[path = "../service/support/daemon.rs"]
 #[expect(dead_code, reason = "tests of the service look into it as well")]
 mod daemon;
+#[path = "../../examples/first_query.rs"]
+#[expect(dead_code, reason = "the example's own way in")]
+mod first_query;
 mod library;
 #[path = "../service/support/messages.rs"]
 #[expect(dead_code, reason = "words for all tests of the service; these need some of them")]

@@ -1,11 +1,14 @@
 //! Does the Rust client bring the recorded answers?
 
+use std::path::Path;
+
 use clearance::limits::Limits;
 use clearance::transports::grpc::Client;
 use clearance::transports::wire::v1;
 use prost::Message;
 
 use crate::daemon::{RunningDaemon, config};
+use crate::first_query;
 use crate::library::{Canonical, Refusal, Told, refusal};
 use crate::record::Record;
 use crate::records::{file, kept};
@@ -81,5 +84,19 @@ async fn the_rust_client_brings_the_recorded_answers() {
         assert!(brought == line, "brought\n{brought}\nrecorded\n{line}");
     }
     drop(client);
+    daemon.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_first_query_prints_what_that_of_every_client_prints() {
+    let daemon = RunningDaemon::start(&config(Limits::default())).await;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/robot-ur5");
+    let mut printed = Vec::new();
+    watched("the first query", first_query::run(&daemon.address, &folder, &mut printed)).await.unwrap();
+    let printed = String::from_utf8(printed).unwrap();
+    if std::env::var_os("CLEARANCE_REGENERATE").is_some() {
+        std::fs::write(folder.parent().unwrap().join("first_query.txt"), &printed).unwrap();
+    }
+    assert_eq!(printed, String::from_utf8(file("tests/data/first_query.txt")).unwrap());
     daemon.stop().await;
 }

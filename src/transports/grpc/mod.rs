@@ -35,7 +35,9 @@ mod web;
 
 pub use access::Scope;
 pub use bulk::{BulkClient, BulkStates, BulkVerdicts};
-pub use client::{Client, ClientError, RemoteEdit, RemoteRobot, RemoteServer, Way};
+pub use client::{
+    Client, ClientError, Messages, Refusal, RemoteAttachment, RemoteEdit, RemoteOverlay, RemoteRobot, RemoteServer, Way,
+};
 pub use credentials::{Bearer, Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use echo::GrpcEcho;

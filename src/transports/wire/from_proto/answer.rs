@@ -46,7 +46,7 @@ fn item(item: &v1::ItemAnswer) -> Result<ItemAnswer, NotAnAnswer> {
     })
 }
 
-fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
+pub(super) fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
     let bracket = pair.bracket.ok_or(NotAnAnswer("bracket"))?;
     Ok(PairAnswer {
         a: side(pair.a.as_ref())?,
@@ -68,7 +68,7 @@ fn side(side: Option<&v1::Side>) -> Result<Side, NotAnAnswer> {
     })
 }
 
-fn verdict(number: i32, why: i32) -> Result<Verdict, NotAnAnswer> {
+pub(super) fn verdict(number: i32, why: i32) -> Result<Verdict, NotAnAnswer> {
     match v1::Verdict::try_from(number) {
         Ok(v1::Verdict::Free) => Ok(Verdict::Free),
         Ok(v1::Verdict::Margin) => Ok(Verdict::Margin),
@@ -80,7 +80,7 @@ fn verdict(number: i32, why: i32) -> Result<Verdict, NotAnAnswer> {
     }
 }
 
-fn indeterminacy(number: i32) -> Result<Indeterminacy, NotAnAnswer> {
+pub(super) fn indeterminacy(number: i32) -> Result<Indeterminacy, NotAnAnswer> {
     match v1::Indeterminacy::try_from(number) {
         Ok(v1::Indeterminacy::Rounding) => Ok(Indeterminacy::Rounding),
         Ok(v1::Indeterminacy::IterationLimit) => Ok(Indeterminacy::IterationLimit),
@@ -114,7 +114,7 @@ fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
     })
 }
 
-fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
+pub(super) fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
     let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } =
         cost.ok_or(NotAnAnswer("cost"))?;
     Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations })

@@ -3,6 +3,7 @@
 
 mod answer;
 mod cast;
+mod cast_answer;
 mod contact;
 mod fields;
 mod geometry;
@@ -16,6 +17,9 @@ mod stream;
 
 pub use answer::{NotAnAnswer, answer};
 pub use cast::{cast_rays, cast_shapes, check_moving_pairs, nearest_bodies, overlap};
+pub use cast_answer::{
+    cast_rays_answers, cast_shapes_answers, check_moving_pairs_answers, nearest_bodies_answers, overlap_answers,
+};
 pub use contact::contact_question;
 pub use geometry::{mesh_card_request, unusable_mesh};
 pub use motion::{check_motions, check_path, clearance, motions};

@@ -2,6 +2,7 @@
 
 mod answer;
 mod cast;
+mod cast_question;
 mod contact;
 mod geometry;
 mod health;
@@ -16,6 +17,9 @@ mod stream;
 pub use answer::{added_bodies, answer};
 pub use cast::{
     cast_rays_response, cast_shapes_response, check_moving_pairs_response, nearest_bodies_response, overlap_response,
+};
+pub use cast_question::{
+    cast_rays_request, cast_shapes_request, check_moving_pairs_request, nearest_bodies_request, overlap_request,
 };
 pub use contact::contact_messages;
 pub use geometry::{pose, shape};

@@ -1,105 +1,31 @@
-//! How does a Rust program ask a daemon? The generated clients behind the library's own words: plain structs in and out,
-//! as if the service were in the same process.
+//! A connection to a daemon: what it shows, scenes, uploads and robots.
 
 use std::time::Duration;
 
 use tonic::service::interceptor::InterceptedService;
 use tonic::transport::{Channel, Endpoint};
-use tonic::{Code, Status};
 
-use super::credentials::{Bearer, Credentials};
-use crate::geometry::Pose;
-use crate::query::{Answer, CheckMotions, CheckStates, Clearance, Motions, PairQuery};
-use crate::scene::{Applied, BodyId, BodyRef, Epoch, NewBody, Revision};
-use crate::service::{Changed, ContentHash, RobotDescription, Target};
-use crate::transports::wire::from_proto::NotAnAnswer;
+use super::edits::{RemoteEdit, edit};
+use super::error::ClientError;
+use crate::scene::{Applied, BodyId, Epoch, Revision};
+use crate::service::{Changed, ContentHash, RobotDescription};
+use crate::transports::grpc::credentials::{Bearer, Credentials};
 use crate::transports::wire::v1::assets_client::AssetsClient;
 use crate::transports::wire::v1::put_asset_request::Part;
 use crate::transports::wire::v1::queries_client::QueriesClient;
 use crate::transports::wire::v1::robots_client::RobotsClient;
 use crate::transports::wire::v1::scenes_client::ScenesClient;
 use crate::transports::wire::v1::server_client::ServerClient;
-use crate::transports::wire::{from_proto, to_proto, v1};
+use crate::transports::wire::{to_proto, v1};
 
 /// Bytes of a file in one message of an upload.
 const CHUNK: usize = 1 << 20;
 /// How much the server may send before it has to wait, bytes.
-pub(super) const WINDOW: u32 = 8 << 20;
+pub(in crate::transports::grpc) const WINDOW: u32 = 8 << 20;
 /// Answers are as large as the daemon cares to send.
 const LARGEST_ANSWER: usize = usize::MAX;
 /// A daemon that does not take the connection by then is not there.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
-
-/// Why a daemon gave no answer.
-#[derive(Debug, thiserror::Error)]
-pub enum ClientError {
-    /// It cannot be reached.
-    #[error("{address}: {source}")]
-    Unreachable {
-        /// As asked for.
-        address: String,
-        /// What the connection says.
-        source: tonic::transport::Error,
-    },
-    /// The token cannot be sent.
-    #[error("the token is not printable ASCII")]
-    BadToken,
-    /// It refused the request.
-    #[error("{message} ({code:?})")]
-    Refused {
-        /// gRPC's code.
-        code: Code,
-        /// The reason for programs, as in `ErrorReason`; empty if the daemon gave none.
-        reason: String,
-        /// The reason for people.
-        message: String,
-    },
-    /// It answered with something this version does not know.
-    #[error(transparent)]
-    NotAnAnswer(#[from] NotAnAnswer),
-    /// It left out something that has to be there.
-    #[error("the daemon's answer has no {0}")]
-    Missing(&'static str),
-}
-
-impl From<Status> for ClientError {
-    fn from(status: Status) -> Self {
-        let reason = status.metadata().get("clearance-reason").and_then(|reason| reason.to_str().ok());
-        Self::Refused {
-            code: status.code(),
-            reason: reason.unwrap_or_default().to_owned(),
-            message: status.message().to_owned(),
-        }
-    }
-}
-
-/// A change of a scene, as far as a client needs it.
-#[derive(Clone, Debug)]
-pub enum RemoteEdit {
-    /// A body enters the scene.
-    AddBody(NewBody),
-    /// A body is somewhere else from now on.
-    MoveBody {
-        /// Which.
-        body: BodyRef,
-        /// Its frame in the world, metres.
-        pose: Pose,
-    },
-    /// A body leaves the scene.
-    RemoveBody {
-        /// Which.
-        body: BodyRef,
-    },
-    /// A robot that was loaded before stands in the scene.
-    AddRobot {
-        /// Its name in the scene.
-        name: String,
-        /// The model's id.
-        model: String,
-        /// The root link's frame in the world, metres.
-        base: Pose,
-    },
-}
 
 /// What a client knows of a robot the daemon has loaded.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -129,6 +55,9 @@ pub struct RemoteServer {
 pub type Way = InterceptedService<Channel, Bearer>;
 
 /// A connection to a daemon. Cloning shares it.
+///
+/// A call takes as long as it takes: for a deadline put `tokio::time::timeout` around it. A call that is dropped is cancelled, and the
+/// daemon stops working on it.
 #[derive(Clone, Debug)]
 pub struct Client {
     scenes: ScenesClient<Way>,
@@ -136,6 +65,8 @@ pub struct Client {
     robots: RobotsClient<Way>,
     queries: QueriesClient<Way>,
     server: ServerClient<Way>,
+    /// What questions are asked with.
+    pub(super) supposed: Option<Box<v1::Overlay>>,
 }
 
 impl Client {
@@ -175,6 +106,7 @@ impl Client {
             robots: RobotsClient::new(channel.clone()).max_decoding_message_size(LARGEST_ANSWER),
             queries: QueriesClient::new(channel.clone()).max_decoding_message_size(LARGEST_ANSWER),
             server: ServerClient::new(channel),
+            supposed: None,
         })
     }
 
@@ -286,81 +218,4 @@ impl Client {
         let applied = Applied { revision: Revision(response.revision), added };
         Ok(Changed { epoch: Epoch(response.epoch), applied })
     }
-
-    /// Is the robot free in these states?
-    ///
-    /// # Errors
-    /// [`ClientError`].
-    pub async fn check_states(&self, target: &Target, question: &CheckStates) -> Result<Answer, ClientError> {
-        let request = to_proto::check_states_request(target, question);
-        let response = self.queries().check_states(request).await?.into_inner();
-        plain(response.answer)
-    }
-
-    /// Is the robot free all along these motions, or this path?
-    ///
-    /// # Errors
-    /// [`ClientError`].
-    pub async fn check_motions(&self, target: &Target, question: &CheckMotions) -> Result<Answer, ClientError> {
-        let mut queries = self.queries();
-        let answer = match question.motions {
-            Motions::Edges => {
-                let request = to_proto::check_motions_request(target, question);
-                let response = queries.check_motions(request).await?.into_inner();
-                from_proto::motions(response.answer.as_ref(), &response.motions)
-            }
-            Motions::Path => {
-                let request = to_proto::check_path_request(target, question);
-                let response = queries.check_path(request).await?.into_inner();
-                from_proto::motions(response.answer.as_ref(), &response.motions)
-            }
-        };
-        Ok(answer?)
-    }
-
-    /// Which pairs are within a distance?
-    ///
-    /// # Errors
-    /// [`ClientError`].
-    pub async fn clearance(&self, target: &Target, question: &Clearance) -> Result<Answer, ClientError> {
-        let request = to_proto::clearance_request(target, question);
-        plain(self.queries().clearance(request).await?.into_inner().answer)
-    }
-
-    /// What touches?
-    ///
-    /// # Errors
-    /// [`ClientError`].
-    pub async fn collide(&self, target: &Target, question: &PairQuery) -> Result<Answer, ClientError> {
-        let request = to_proto::collide_request(target, question);
-        plain(self.queries().collide(request).await?.into_inner().answer)
-    }
-
-    /// How far is the nearest?
-    ///
-    /// # Errors
-    /// [`ClientError`].
-    pub async fn distance(&self, target: &Target, question: &PairQuery) -> Result<Answer, ClientError> {
-        let request = to_proto::distance_request(target, question);
-        plain(self.queries().distance(request).await?.into_inner().answer)
-    }
-}
-
-fn plain(answer: Option<v1::Answer>) -> Result<Answer, ClientError> {
-    Ok(from_proto::answer(&answer.ok_or(ClientError::Missing("answer"))?)?)
-}
-
-fn edit(edit: &RemoteEdit) -> v1::Edit {
-    use v1::edit::Kind;
-    let kind = match edit {
-        RemoteEdit::AddBody(body) => Kind::AddBody(to_proto::add_body(body)),
-        RemoteEdit::MoveBody { body, pose } => {
-            Kind::MoveBody(v1::MoveBody { body: Some(to_proto::body_ref(body)), pose: Some(to_proto::pose(pose)) })
-        }
-        RemoteEdit::RemoveBody { body } => Kind::RemoveBody(v1::RemoveBody { body: Some(to_proto::body_ref(body)) }),
-        RemoteEdit::AddRobot { name, model, base } => {
-            Kind::AddRobot(v1::AddRobot { name: name.clone(), model: model.clone(), base: Some(to_proto::pose(base)) })
-        }
-    };
-    v1::Edit { kind: Some(kind) }
 }
