@@ -8,7 +8,9 @@ use crate::app::{
     Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, TlsSettings,
     defaults,
 };
-use crate::app::{log_to_stderr, stop_signal};
+use crate::app::{LogFormat, MetricsSettings, ServiceState, log_to_stderr, stop_signal, tell_service_manager};
+#[cfg(feature = "metrics")]
+use crate::observability::EndpointError;
 #[cfg(feature = "grpc")]
 use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
@@ -58,6 +60,18 @@ pub struct Serve {
     #[arg(long, value_name = "FILTER", env = "CLEARANCE_LOG",
         help = format!("Log lines written to stderr, for example `clearance=debug,warn` [default: {}]", defaults::LOG))]
     pub log: Option<String>,
+    /// How log lines look [default: text]
+    #[arg(long, value_name = "text|json", env = "CLEARANCE_LOG_FORMAT")]
+    pub log_format: Option<LogFormat>,
+    /// Log calls that take at least so many seconds, at most one line a second; 0: none [default: 0]
+    #[arg(long, value_name = "SECONDS", env = "CLEARANCE_SLOW_QUERY_SECONDS")]
+    pub slow_query_seconds: Option<f64>,
+    /// Where /metrics, /livez and /readyz are, over HTTP; port 0 takes any free one [default: nowhere]
+    #[arg(long, value_name = "HOST:PORT", env = "CLEARANCE_METRICS_ADDRESS")]
+    pub metrics_address: Option<String>,
+    /// Let them be beyond loopback: whoever reaches them reads the names of scenes and how busy the daemon is.
+    #[arg(long, env = "CLEARANCE_METRICS_EXPOSED")]
+    pub metrics_exposed: bool,
     /// A cap of the service by its name in docs/operations.md; may be given several times.
     #[arg(long, value_name = "NAME=N", env = "CLEARANCE_LIMITS", value_delimiter = ',', value_parser = limit)]
     pub limit: Vec<(String, i64)>,
@@ -76,7 +90,10 @@ pub fn run(serve: &Serve, output: &mut dyn Write) -> Exit {
         Err(error) => {
             let exit = match error {
                 ConfigError::Unreadable { .. } | ConfigError::BadFile { .. } => Exit::Input,
-                ConfigError::BadLimit { .. } | ConfigError::BadDoor { .. } => Exit::Usage,
+                ConfigError::BadLimit { .. }
+                | ConfigError::BadDoor { .. }
+                | ConfigError::BadNumber { .. }
+                | ConfigError::NotBuiltIn { .. } => Exit::Usage,
             };
             failed(exit, &error)
         }
@@ -88,6 +105,8 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
         threads: serve.threads,
         drain_seconds: serve.drain_seconds,
         log: serve.log.clone(),
+        log_format: serve.log_format,
+        slow_query_seconds: serve.slow_query_seconds,
         grpc: GrpcSettings {
             address: serve.grpc_address.clone(),
             insecure: serve.insecure.then_some(true),
@@ -104,6 +123,11 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
             root: serve.shared_memory_root.clone(),
             spin_microseconds: None,
         },
+        metrics: MetricsSettings {
+            address: serve.metrics_address.clone(),
+            exposed: serve.metrics_exposed.then_some(true),
+            scenes: None,
+        },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -111,7 +135,7 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
 }
 
 fn started(config: &Config, output: &mut dyn Write) -> Exit {
-    if let Err(error) = log_to_stderr(&config.log) {
+    if let Err(error) = log_to_stderr(&config.log, config.log_format) {
         return failed(Exit::Usage, &error);
     }
     let runtime = match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
@@ -137,6 +161,10 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
                 StartError::Grpc(error) => exit_of_grpc(error),
                 #[cfg(feature = "shared-memory")]
                 StartError::SharedMemory(error) => exit_of_shared_memory(error),
+                #[cfg(feature = "metrics")]
+                StartError::Metrics(EndpointError::NotLoopback { .. }) => Exit::Usage,
+                #[cfg(feature = "metrics")]
+                StartError::Metrics(EndpointError::Address { .. }) => Exit::Failure,
                 StartError::Threads(_) => Exit::Failure,
             };
             return failed(exit, &error);
@@ -145,6 +173,11 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
     if let Err(error) = announce(&daemon, output) {
         return failed(Exit::Failure, &error);
     }
+    tell_service_manager(ServiceState::Ready);
+    let stop = async {
+        stop.await;
+        tell_service_manager(ServiceState::Stopping);
+    };
     match daemon.run(stop).await {
         Ok(Drained::Clean) => Exit::Success,
         Ok(Drained::Late) => failed(Exit::Failure, &"requests were still under way when the time to drain was over"),
@@ -173,10 +206,13 @@ fn exit_of_shared_memory(error: &shared_memory::BindError) -> Exit {
     }
 }
 
-/// One line for each door, so that whoever started the daemon knows where to ask.
+/// One line for each door, and for the metrics, so that whoever started the daemon knows where to ask.
 fn announce(daemon: &Daemon, output: &mut dyn Write) -> io::Result<()> {
     for door in daemon.doors() {
         writeln!(output, "listening {} {}", door.kind, door.address)?;
+    }
+    if let Some(address) = daemon.metrics_address() {
+        writeln!(output, "listening metrics {address}")?;
     }
     output.flush()
 }
