@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 #[cfg(feature = "shared-memory")]
 use super::SharedMemory;
-use super::{GrpcSettings, LogFormat, MetricsSettings, SharedMemorySettings};
+use super::{GrpcSettings, LogFormat, MetricsSettings, SharedMemorySettings, TracesSettings};
 use crate::limits::Limits;
 use crate::service;
 
@@ -35,6 +35,9 @@ pub struct Config {
     /// The metrics endpoint, if there is to be one.
     #[cfg(feature = "metrics")]
     pub metrics: Option<crate::observability::MetricsConfig>,
+    /// Where traces go, if there are to be any.
+    #[cfg(feature = "traces")]
+    pub traces: Option<crate::observability::TracesConfig>,
 }
 
 /// What holds if nobody says.
@@ -55,6 +58,8 @@ pub mod defaults {
     pub const LOG_FORMAT: super::LogFormat = super::LogFormat::Text;
     /// Scenes that have figures of their own among the metrics, at most.
     pub const METRICS_SCENES: usize = 50;
+    /// Of calls that come without a trace, this share begins one.
+    pub const TRACES_SAMPLE_RATIO: f64 = 0.01;
 }
 
 /// Choices of one source, as far as it says something. The same names are keys of the file.
@@ -77,6 +82,8 @@ pub struct Settings {
     pub shared_memory: SharedMemorySettings,
     /// The metrics endpoint.
     pub metrics: MetricsSettings,
+    /// Traces.
+    pub traces: TracesSettings,
     /// Caps by their names in [`Limits`].
     pub limits: toml::Table,
 }
@@ -112,9 +119,9 @@ pub enum ConfigError {
         /// Which part of the configuration.
         key: &'static str,
     },
-    /// A number that cannot be.
+    /// A value that cannot be.
     #[error("{key}: {problem}")]
-    BadNumber {
+    BadValue {
         /// Which key.
         key: &'static str,
         /// Why.
@@ -162,6 +169,7 @@ impl Settings {
             grpc: self.grpc.over(weaker.grpc),
             shared_memory: self.shared_memory.over(weaker.shared_memory),
             metrics: self.metrics.over(weaker.metrics),
+            traces: self.traces.over(weaker.traces),
             limits,
         }
     }
@@ -173,6 +181,8 @@ impl Settings {
     pub fn resolve(self) -> Result<Config, ConfigError> {
         let bad = |problem: toml::de::Error| ConfigError::BadLimit { problem: problem.message().to_owned() };
         let limits = self.limits.try_into().map_err(bad)?;
+        #[cfg_attr(not(feature = "traces"), expect(unused_variables, reason = "only the check counts"))]
+        let traces = self.traces.checked()?;
         let slow_query = slow_query(self.slow_query_seconds.unwrap_or(0.0))?;
         #[cfg(not(feature = "metrics"))]
         if self.metrics.is_asked_for() {
@@ -190,12 +200,15 @@ impl Settings {
             slow_query,
             #[cfg(feature = "metrics")]
             metrics: self.metrics.resolve(),
+            #[cfg(feature = "traces")]
+            traces: traces
+                .map(|(endpoint, sample_ratio)| crate::observability::TracesConfig { endpoint, sample_ratio }),
         })
     }
 }
 
 fn slow_query(seconds: f64) -> Result<Duration, ConfigError> {
-    let bad = |problem: String| ConfigError::BadNumber { key: "slow_query_seconds", problem };
+    let bad = |problem: String| ConfigError::BadValue { key: "slow_query_seconds", problem };
     Duration::try_from_secs_f64(seconds).map_err(|error| bad(format!("{seconds}: {error}")))
 }
 

@@ -36,6 +36,11 @@ pub(super) fn observers(config: &Config) -> Vec<Box<dyn Observer>> {
     if !config.slow_query.is_zero() {
         observers.push(Box::new(SlowQueries::new(config.slow_query)));
     }
+    #[cfg(feature = "traces")]
+    if config.traces.is_some() {
+        // First, so that the others know the trace.
+        observers.insert(0, Box::new(crate::observability::TraceParents::default()));
+    }
     observers
 }
 

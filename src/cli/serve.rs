@@ -5,10 +5,12 @@ use std::path::PathBuf;
 
 use super::exit_code::Exit;
 use crate::app::{
+    BadLogging, LogFormat, Logging, MetricsSettings, ServiceState, TracesSettings, stop_signal, tell_service_manager,
+};
+use crate::app::{
     Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, TlsSettings,
     defaults,
 };
-use crate::app::{LogFormat, MetricsSettings, ServiceState, log_to_stderr, stop_signal, tell_service_manager};
 #[cfg(feature = "metrics")]
 use crate::observability::EndpointError;
 #[cfg(feature = "grpc")]
@@ -72,6 +74,16 @@ pub struct Serve {
     /// Let them be beyond loopback: whoever reaches them reads the names of scenes and how busy the daemon is.
     #[arg(long, env = "CLEARANCE_METRICS_EXPOSED")]
     pub metrics_exposed: bool,
+    /// Collector of OpenTelemetry that spans of calls are sent to (OTLP over gRPC) [default: none]
+    #[arg(long, value_name = "http://HOST:PORT", env = "CLEARANCE_TRACES_ENDPOINT")]
+    pub traces_endpoint: Option<String>,
+    /// Of calls that come without a trace, this share begins one.
+    #[arg(long, value_name = "0..1", env = "CLEARANCE_TRACES_SAMPLE_RATIO",
+        help = format!("Of calls that come without a trace, this share begins one [default: {}]", defaults::TRACES_SAMPLE_RATIO))]
+    pub traces_sample_ratio: Option<f64>,
+    /// Read the configuration, say what is wrong with it, and end. Files that it names are not read.
+    #[arg(long)]
+    pub check: bool,
     /// A cap of the service by its name in docs/operations.md; may be given several times.
     #[arg(long, value_name = "NAME=N", env = "CLEARANCE_LIMITS", value_delimiter = ',', value_parser = limit)]
     pub limit: Vec<(String, i64)>,
@@ -86,13 +98,14 @@ fn limit(text: &str) -> Result<(String, i64), String> {
 /// Serves until SIGTERM or SIGINT.
 pub fn run(serve: &Serve, output: &mut dyn Write) -> Exit {
     match configured(serve) {
+        Ok(_) if serve.check => Exit::Success,
         Ok(config) => started(&config, output),
         Err(error) => {
             let exit = match error {
                 ConfigError::Unreadable { .. } | ConfigError::BadFile { .. } => Exit::Input,
                 ConfigError::BadLimit { .. }
                 | ConfigError::BadDoor { .. }
-                | ConfigError::BadNumber { .. }
+                | ConfigError::BadValue { .. }
                 | ConfigError::NotBuiltIn { .. } => Exit::Usage,
             };
             failed(exit, &error)
@@ -128,6 +141,7 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
             exposed: serve.metrics_exposed.then_some(true),
             scenes: None,
         },
+        traces: TracesSettings { endpoint: serve.traces_endpoint.clone(), sample_ratio: serve.traces_sample_ratio },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -135,14 +149,18 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
 }
 
 fn started(config: &Config, output: &mut dyn Write) -> Exit {
-    if let Err(error) = log_to_stderr(&config.log, config.log_format) {
-        return failed(Exit::Usage, &error);
-    }
     let runtime = match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
         Ok(runtime) => runtime,
         Err(error) => return failed(Exit::Failure, &error),
     };
+    let logging = match runtime.block_on(async { Logging::begin(config) }) {
+        Ok(logging) => logging,
+        Err(error @ BadLogging::Filter { .. }) => return failed(Exit::Usage, &error),
+        #[cfg(feature = "traces")]
+        Err(error @ BadLogging::Traces(_)) => return failed(Exit::Usage, &error),
+    };
     let exit = runtime.block_on(served(config, output));
+    logging.finish();
     // Work that is still under way after the drain must not hold up the end of the process.
     runtime.shutdown_background();
     exit

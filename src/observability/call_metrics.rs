@@ -38,11 +38,7 @@ struct ItemLabels {
     door: &'static str,
     rpc: &'static str,
     verdict: &'static str,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Hash, EncodeLabelSet)]
-struct ReasonLabels {
-    rpc: &'static str,
+    /// Of undecided items; else empty, which is none.
     reason: &'static str,
 }
 
@@ -80,7 +76,6 @@ struct Families {
     under_way: Family<DoorLabels, Gauge>,
     streams: Family<CallLabels, Counter>,
     items: Family<ItemLabels, Counter>,
-    indeterminate: Family<ReasonLabels, Counter>,
     out_of_time: Family<WorkLabels, Counter>,
     edits: Family<DoorLabels, Counter>,
     limits: Family<LimitLabels, Counter>,
@@ -97,7 +92,6 @@ impl CallMetrics {
             under_way: Family::default(),
             streams: Family::default(),
             items: Family::default(),
-            indeterminate: Family::default(),
             out_of_time: Family::default(),
             edits: Family::default(),
             limits: Family::default(),
@@ -110,7 +104,6 @@ impl CallMetrics {
             under_way,
             streams,
             items,
-            indeterminate,
             out_of_time,
             edits,
             limits,
@@ -130,7 +123,6 @@ impl CallMetrics {
         registry.register("clearance_calls_in_flight", "Calls under way, streams included", under_way.clone());
         registry.register("clearance_streams_ended", "Streams that have ended", streams.clone());
         registry.register("clearance_items", "Items of questions that were answered", items.clone());
-        registry.register("clearance_items_indeterminate", "Items that were not decided", indeterminate.clone());
         registry.register(
             "clearance_answers_out_of_time",
             "Answers whose time ran out before every item was looked at",
@@ -174,10 +166,7 @@ impl Observer for CallMetrics {
             if count == 0 {
                 continue;
             }
-            families.items.get_or_create(&ItemLabels { door, rpc, verdict }).inc_by(count);
-            if !reason.is_empty() {
-                families.indeterminate.get_or_create(&ReasonLabels { rpc, reason }).inc_by(count);
-            }
+            families.items.get_or_create(&ItemLabels { door, rpc, verdict, reason }).inc_by(count);
         }
         if answered.out_of_time {
             families.out_of_time.get_or_create(&WorkLabels { door, rpc }).inc();

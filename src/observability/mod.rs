@@ -18,6 +18,8 @@ mod scene_checks;
 #[cfg(feature = "metrics")]
 mod scene_metrics;
 mod slow_queries;
+#[cfg(feature = "traces")]
+mod traces;
 
 pub use call_log::{CallLog, TARGET};
 #[cfg(feature = "metrics")]
@@ -25,3 +27,5 @@ pub use call_metrics::CallMetrics;
 #[cfg(feature = "metrics")]
 pub use endpoint::{Endpoint, EndpointError, MetricsConfig};
 pub use slow_queries::SlowQueries;
+#[cfg(feature = "traces")]
+pub use traces::{TraceParents, Traces, TracesConfig, TracesError};

@@ -5,6 +5,9 @@ use std::time::Duration;
 
 use crate::service::{CallNotes, Ending, Observer, Question, Seldom};
 
+/// What the lines are filtered by.
+const SLOW: &str = "clearance::slow";
+
 /// Writes the lines.
 #[derive(Debug)]
 pub struct SlowQueries {
@@ -31,6 +34,7 @@ impl Observer for SlowQueries {
         let (asker, question, answered) = (notes.asker(), notes.question(), notes.answered());
         let cost = answered.map(|answered| answered.cost);
         tracing::warn!(
+            target: SLOW,
             parent: None,
             call = notes.number(),
             rpc = notes.rpc().name,

@@ -167,7 +167,8 @@ impl CallNotes {
     /// The trace it belongs to: 32 hexadecimal digits.
     #[must_use]
     pub fn trace(&self) -> Option<&str> {
-        self.trace.get().map(String::as_str)
+        let told = || trace_of(self.asker.traceparent.as_deref()?);
+        self.trace.get().map(String::as_str).or_else(told)
     }
 
     /// An observer knows the trace.
@@ -209,6 +210,15 @@ impl CallNotes {
     }
 }
 
+/// The trace that a `traceparent` (version-trace-parent-flags, in hexadecimal digits) names.
+fn trace_of(traceparent: &str) -> Option<&str> {
+    let mut parts = traceparent.split('-');
+    let [version, trace, parent] = [parts.next()?, parts.next()?, parts.next()?];
+    let is_hex = |text: &str, digits| text.len() == digits && text.bytes().all(|c| c.is_ascii_hexdigit());
+    let is_one = is_hex(version, 2) && is_hex(trace, 32) && is_hex(parent, 16) && trace.bytes().any(|c| c != b'0');
+    is_one.then_some(trace)
+}
+
 fn add(total: &AtomicU64, time: Duration) {
     let time = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX - 1);
     let more = |total: u64| Some(if total == u64::MAX { time } else { total.saturating_add(time).min(u64::MAX - 1) });
@@ -239,6 +249,16 @@ mod tests {
         assert_eq!(notes.waited(), Some(Duration::from_nanos(7)));
         notes.note_waited(Duration::MAX);
         assert_eq!(notes.waited(), Some(Duration::from_nanos(u64::MAX - 1)));
+    }
+
+    #[test]
+    fn only_a_trace_that_is_one_is_told() {
+        let trace = "4bf92f3577b34da6a3ce929d0e0e4736";
+        assert_eq!(trace_of(&format!("00-{trace}-00f067aa0ba902b7-01")), Some(trace));
+        let zero = "0".repeat(32);
+        for wrong in ["", "00", "00-x-y-01", &format!("00-{zero}-00f067aa0ba902b7-01"), "00-\n4bf92f3577b34da6a-1-01"] {
+            assert_eq!(trace_of(wrong), None, "{wrong:?}");
+        }
     }
 
     #[tokio::test]
