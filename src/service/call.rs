@@ -38,7 +38,7 @@ impl Call {
             otel.name = rpc.name,
             otel.kind = "server",
             otel.status_code = tracing::field::Empty,
-            call = number,
+            call = i64::try_from(number).unwrap_or(i64::MAX),
             rpc = rpc.name,
             door = asker.door,
             client = &*asker.client,
@@ -125,9 +125,11 @@ fn record(notes: &CallNotes, outcome: Outcome) {
     }
     let seconds = |time: Option<std::time::Duration>| time.map(|time| time.as_secs_f64());
     span.record("scene", notes.scene());
-    span.record("revision", notes.revision().map(|revision| revision.0));
-    span.record("items", notes.question().map(|question| question.items));
-    span.record("pairs", notes.answered().map(|answered| answered.cost.pairs));
+    // Exporters of spans know numbers with a sign.
+    let number = |number: u64| i64::try_from(number).unwrap_or(i64::MAX);
+    span.record("revision", notes.revision().map(|revision| number(revision.0)));
+    span.record("items", notes.question().map(|question| number(question.items as u64)));
+    span.record("pairs", notes.answered().map(|answered| number(answered.cost.pairs)));
     span.record("waited_seconds", seconds(notes.waited()));
     span.record("worked_seconds", seconds(notes.worked()));
 }

@@ -64,11 +64,7 @@ pub const FLOORS: &[Floor] = &[
         may_name: &[GEOMETRY, "limits", "narrow_phase", "broad_phase", "robot", "scene", "query", "service"],
         but_not: &[],
     },
-    Floor {
-        name: "observability",
-        may_name: &["limits", "scene", "query", "service", COST],
-        but_not: &[WRITER],
-    },
+    Floor { name: "observability", may_name: &["limits", "scene", "query", "service", COST], but_not: &[WRITER] },
     Floor { name: "app", may_name: &["*"], but_not: &[WRITER, PROTOBUF] },
     Floor { name: "cli", may_name: &["*"], but_not: &[WRITER, PROTOBUF] },
     Floor { name: "main", may_name: &["*"], but_not: &[WRITER, PROTOBUF] },

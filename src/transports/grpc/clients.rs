@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn one_network_of_the_sixth_version_is_one_client() {
         let clients = Clients::new(&Limits::default());
-        let at = |text: &str| clients.at(text.parse().unwrap()).name().to_owned();
+        let at = |text: &str| clients.at(text.parse().unwrap()).name().to_string();
         assert_eq!(at("2001:db8:1:2::5"), at("2001:db8:1:2:ffff::"));
         assert_ne!(at("2001:db8:1:2::5"), at("2001:db8:1:3::5"));
         assert_eq!(at("::ffff:10.0.0.1"), "peer:10.0.0.1");
