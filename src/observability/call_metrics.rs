@@ -103,7 +103,8 @@ impl CallMetrics {
             // Looked up once: every answer adds to all of them.
             cost: COSTS.map(|kind| cost.get_or_create_owned(&CostLabels { kind })),
         };
-        let Families { duration, wait, work, under_way, streams, items, out_of_time, edits, limits, cost } = &families;
+        let Families { duration, wait, work, under_way, streams, items, out_of_time, edits, limits, cost: _ } =
+            &families;
         registry.register(
             "clearance_call_duration_seconds",
             "Time from the arrival of a call to its answer, without the time that a caller takes to read it",
@@ -168,6 +169,8 @@ impl Observer for CallMetrics {
         let cost = answered.cost;
         let counts =
             [cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs, cost.escalations];
-        families.cost.iter().zip(counts).for_each(|(total, count)| drop(total.inc_by(count)));
+        for (total, count) in families.cost.iter().zip(counts) {
+            total.inc_by(count);
+        }
     }
 }

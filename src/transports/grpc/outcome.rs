@@ -17,10 +17,15 @@ pub(super) fn outcome_of(headers: &HeaderMap) -> Outcome {
         return Outcome::limit(limit);
     }
     let reason = text("clearance-reason").and_then(Outcome::named);
-    reason.unwrap_or_else(|| match Code::from_bytes(status.as_bytes()) {
-        Code::Ok => Outcome::OK,
-        Code::Cancelled => Outcome::ABANDONED,
-        _ => Outcome::OTHER,
+    reason.unwrap_or_else(|| {
+        let code = Code::from_bytes(status.as_bytes());
+        if code == Code::Ok {
+            Outcome::OK
+        } else if code == Code::Cancelled {
+            Outcome::ABANDONED
+        } else {
+            Outcome::OTHER
+        }
     })
 }
 
