@@ -5,7 +5,6 @@ use clearance::limits::Limits;
 use clearance::service::ServiceError;
 use clearance::transports::shared_memory::{Received, decode};
 use clearance::transports::shared_memory::layout::{ABI_HASH, MAGIC, RequestHeader, VERSION};
-use clearance::transports::wire::bytes::Bytes;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -21,7 +20,7 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 fn looked_at(message: &[u8]) {
-    match decode(&Bytes::copy_from_slice(message), &Limits::default()) {
+    match decode(message, &Limits::default()) {
         Ok(Received::Asked(request)) => {
             assert!(request.items <= Limits::default().max_items && !request.target.scene.contains('\u{fffd}'))
         }

@@ -6,6 +6,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 #[cfg(feature = "grpc")]
+use super::bench::{self, Bench};
+#[cfg(feature = "grpc")]
 use super::demo::{self, Demo};
 use super::exit_code::Exit;
 use super::pairs::{self, Pairs};
@@ -22,6 +24,9 @@ struct Arguments {
 
 #[derive(Subcommand, Debug)]
 enum Command {
+    /// What the doors cost, beside the bare stacks that they are made of.
+    #[cfg(feature = "grpc")]
+    Bench(Bench),
     /// A tour: a daemon, a robot arm in real scenes, real questions, and what an edit changes.
     #[cfg(feature = "grpc")]
     Demo(Demo),
@@ -38,6 +43,8 @@ enum Command {
 pub fn run() -> ExitCode {
     let mut output = io::stdout().lock();
     let ended = match Arguments::parse().command {
+        #[cfg(feature = "grpc")]
+        Command::Bench(arguments) => bench::run(&arguments, &mut output),
         #[cfg(feature = "grpc")]
         Command::Demo(arguments) => demo::run(&arguments, &mut output),
         Command::Pairs(arguments) => pairs::run(&arguments, &mut output),

@@ -1,6 +1,8 @@
 //! The commands: flags and files in, lines out.
 
 mod backend;
+#[cfg(feature = "grpc")]
+mod bench;
 mod case;
 mod command;
 mod daemon_flags;
@@ -10,6 +12,8 @@ mod exit_code;
 mod json_field;
 mod pairs;
 mod robot_files;
+#[cfg(feature = "grpc")]
+mod sample;
 mod scene_file;
 mod serve;
 mod state_line;

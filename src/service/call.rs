@@ -4,6 +4,7 @@
 //! found out by dropping it: its caller went away.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use tracing::{Instrument, Span};
 
@@ -22,6 +23,7 @@ pub struct Call(Option<Observed>);
 struct Observed {
     notes: Arc<CallNotes>,
     observers: Observers,
+    over: AtomicBool,
 }
 
 impl Call {
@@ -52,7 +54,7 @@ impl Call {
         );
         let notes = Arc::new(CallNotes::new(number, rpc, asker, span));
         observers.iter().for_each(|observer| observer.begun(&notes, notes.span()));
-        Self(Some(Observed { notes, observers: Arc::clone(observers) }))
+        Self(Some(Observed { notes, observers: Arc::clone(observers), over: AtomicBool::new(false) }))
     }
 
     /// Its number, where it is observed.
@@ -79,7 +81,7 @@ impl Call {
     ///
     /// # Errors
     /// What `answering` says.
-    pub async fn answer<T>(self, answering: impl Future<Output = Result<T, ServiceError>>) -> Result<T, ServiceError> {
+    pub async fn answer<T>(&self, answering: impl Future<Output = Result<T, ServiceError>>) -> Result<T, ServiceError> {
         let outcome = self.work(answering).await;
         self.end(Outcome::of_result(&outcome));
         outcome
@@ -93,23 +95,21 @@ impl Call {
         }
     }
 
-    /// The call has ended.
-    pub fn end(mut self, outcome: Outcome) {
-        self.told(outcome);
-    }
-
-    fn told(&mut self, outcome: Outcome) {
-        if let Some(Observed { notes, observers }) = self.0.take() {
-            let ending = Ending { outcome, took: notes.begun().elapsed() };
-            record(&notes, outcome);
-            observers.iter().for_each(|observer| observer.ended(&notes, ending));
+    /// The call has ended. Only the first end counts.
+    pub fn end(&self, outcome: Outcome) {
+        let Some(Observed { notes, observers, over }) = &self.0 else { return };
+        if over.swap(true, Ordering::AcqRel) {
+            return;
         }
+        let ending = Ending { outcome, took: notes.begun().elapsed() };
+        record(notes, outcome);
+        observers.iter().for_each(|observer| observer.ended(notes, ending));
     }
 }
 
 impl Drop for Call {
     fn drop(&mut self) {
-        self.told(Outcome::ABANDONED);
+        self.end(Outcome::ABANDONED);
     }
 }
 

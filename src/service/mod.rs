@@ -36,7 +36,7 @@ pub use assets::{ContentHash, NotAHash, Stored, Upload};
 pub use call::Call;
 pub use call_notes::{Asker, CallNotes, Rpc};
 pub use contact_watch::ContactWatch;
-pub use deadline::Patience;
+pub use deadline::{Patience, Waiting};
 pub use error::ServiceError;
 pub use library::{Library, MeshReading, UnusableMesh};
 pub use mesh_cards::{MeshCardRequest, TimedMeshCard};

@@ -14,12 +14,12 @@ use super::assets::{ContentHash, Stored, Upload};
 use super::call::{Call, Observers};
 use super::call_notes::{Asker, CallNotes, Rpc};
 use super::contact_watch::ContactWatch;
-use super::deadline::{Deadline, Patience, Stop};
+use super::deadline::{Deadline, Patience, Stop, Waiting};
 use super::library::{Library, UnusableMesh};
 use super::mesh_cards::{MeshCardRequest, TimedMeshCard};
 use super::observer::Observer;
 use super::pose_feed::PoseFeed;
-use super::revision_rule::RevisionRule;
+use super::revision_rule::{Found, RevisionRule};
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
 use super::scene_health::SceneHealth;
@@ -396,8 +396,45 @@ impl Service {
             .await
     }
 
-    /// Asks a scene on the calling thread, for questions that take less time than to hand them over. `None`: the revision
-    /// is still to come, and [`Service::ask`] waits for it.
+    /// Asks a scene on the calling thread, for questions that take less time than to hand them over. Waits for a revision
+    /// that is still to come.
+    ///
+    /// # Errors
+    /// As for [`Service::ask`].
+    pub async fn ask_at_once<T>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError>,
+    ) -> Result<T, ServiceError> {
+        self.check_open()?;
+        let _permit = self.queries.enter()?;
+        let deadline = self.deadline(patience)?;
+        let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
+        let found = cell.find(target.revision, deadline).await?;
+        self.answer_here(found, deadline, question)
+    }
+
+    /// Answers a question on the calling thread, which waits for no other.
+    fn answer_here<T>(
+        &self,
+        found: Found,
+        deadline: Deadline,
+        question: impl FnOnce(&View) -> Result<T, ServiceError>,
+    ) -> Result<T, ServiceError> {
+        let notes = CallNotes::current();
+        let revision = found.snapshot.revision();
+        let (stop, _waiting) = Stop::at(deadline);
+        let view = View::on_one_thread(found, stop, &self.limits);
+        let answer = || caught(|| question(&view));
+        let Some(notes) = notes else { return answer() };
+        notes.note_revision(revision);
+        notes.note_waited(Duration::ZERO);
+        notes.work(answer)
+    }
+
+    /// The same without waiting: `None` where the revision is still to come.
     pub fn ask_here<T>(
         &self,
         target: &Target,
@@ -414,15 +451,38 @@ impl Service {
             Ok(found) => found?,
             Err(error) => return Some(Err(error)),
         };
-        let (stop, _waiting) = Stop::at(deadline);
-        let answer = |found| {
-            let view = View::on_one_thread(found, stop, &self.limits);
-            caught(|| question(&view))
+        note(|notes| notes.note_scene(&target.scene));
+        Some(self.answer_here(found, deadline, question))
+    }
+
+    /// Asks a scene on the threads that answer questions; `then` gets the answer there, which spares a caller that is no
+    /// task the way back. Dropping what is returned stops the work. `None`: the revision is still to come, and
+    /// [`Service::ask`] waits for it.
+    ///
+    /// # Errors
+    /// A scene or revision that is not there, or a cap: `then` is not called.
+    pub fn ask_then<T: 'static>(
+        &self,
+        target: &Target,
+        patience: Patience,
+        question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+        then: impl FnOnce(Result<T, ServiceError>) + Send + 'static,
+    ) -> Result<Option<Waiting>, ServiceError> {
+        self.check_open()?;
+        let permit = self.queries.enter()?;
+        let deadline = self.deadline(patience)?;
+        let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
+        let Some(found) = cell.find_now(target.revision)? else { return Ok(None) };
+        note(|notes| notes.note_revision(found.snapshot.revision()));
+        let (stop, waiting) = Stop::at(deadline);
+        let view = View::new(found, stop.clone(), &self.limits);
+        let work = move || {
+            let _permit = permit;
+            if stop.now() { Err(ServiceError::DeadlineExceeded) } else { question(&view) }
         };
-        let Some(notes) = CallNotes::current() else { return Some(answer(found)) };
-        notes.note_scene(&target.scene);
-        notes.note_revision(found.snapshot.revision());
-        Some(notes.work(|| answer(found)))
+        self.workers.answer_then(work, then);
+        Ok(Some(waiting))
     }
 
     /// Watches the contacts of a scene. `question` is told the caps and the snapshot that comes first.

@@ -55,14 +55,23 @@ impl Workers {
         work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
     ) -> Result<T, ServiceError> {
         let (sender, receiver) = oneshot::channel();
+        // Whether somebody still waits for the result is not the work's concern.
+        self.answer_then(work, |result| drop(sender.send(result)));
+        receiver.await.unwrap_or_else(|_| Err(incident("a worker ended without a result")))
+    }
+
+    /// Does `work` on the pool, and there what follows from its result.
+    pub fn answer_then<T: 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
+        then: impl FnOnce(Result<T, ServiceError>) + Send + 'static,
+    ) {
         let (waiting, work) = (Arc::clone(&self.waiting), noted(work));
         waiting.fetch_add(1, Ordering::Relaxed);
         self.pool.spawn(move || {
             waiting.fetch_sub(1, Ordering::Relaxed);
-            // Whether somebody still waits for the result is not the work's concern.
-            drop(sender.send(work()));
+            then(work());
         });
-        receiver.await.unwrap_or_else(|_| Err(incident("a worker ended without a result")))
     }
 }
 

@@ -1,5 +1,6 @@
 //! The doors: each turns what arrives into a call of [`crate::service`] and its answer into what leaves.
 
+pub mod echo;
 #[cfg(feature = "grpc")]
 pub mod grpc;
 #[cfg(any(feature = "grpc", feature = "shared-memory"))]

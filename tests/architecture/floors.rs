@@ -102,7 +102,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("robust", &[GEOMETRY, "narrow_phase"]),
     ("roxmltree", &[GEOMETRY, "robot"]),
     ("rpds", &["scene"]),
-    ("rustix", &["transports"]),
+    ("rustix", &["transports", "cli"]),
     ("sd-notify", &["app"]),
     ("serde", &[GEOMETRY, "limits", "app", "cli"]),
     ("serde_json", &[GEOMETRY, "app", "cli"]),

@@ -8,11 +8,12 @@ use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
 use super::super::exit_code::Failed;
+use super::super::sample;
 use super::super::scene_file::{SceneEntry, StateLine};
 use super::super::state_line::{AnswerLine, Names};
 use super::super::words;
 use super::report::{Cast, HEADINGS, row};
-use super::sample;
+
 use crate::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings, stop_signal};
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckStates, Context, ItemAnswer, Mode, Side, Verdict, Wants};

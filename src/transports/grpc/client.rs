@@ -24,7 +24,7 @@ use crate::transports::wire::{from_proto, to_proto, v1};
 /// Bytes of a file in one message of an upload.
 const CHUNK: usize = 1 << 20;
 /// How much the server may send before it has to wait, bytes.
-const WINDOW: u32 = 8 << 20;
+pub(super) const WINDOW: u32 = 8 << 20;
 /// Answers are as large as the daemon cares to send.
 const LARGEST_ANSWER: usize = usize::MAX;
 /// A daemon that does not take the connection by then is not there.
@@ -126,7 +126,7 @@ pub struct RemoteServer {
 }
 
 /// A connection on which every call brings the token.
-type Way = InterceptedService<Channel, Bearer>;
+pub type Way = InterceptedService<Channel, Bearer>;
 
 /// A connection to a daemon. Cloning shares it.
 #[derive(Clone, Debug)]
@@ -178,12 +178,42 @@ impl Client {
         })
     }
 
+    /// The generated client of scenes, for what has no method here. It is cheap to make, and brings the token.
+    #[must_use]
+    pub fn scenes(&self) -> ScenesClient<Way> {
+        self.scenes.clone()
+    }
+
+    /// The generated client of assets.
+    #[must_use]
+    pub fn assets(&self) -> AssetsClient<Way> {
+        self.assets.clone()
+    }
+
+    /// The generated client of robots.
+    #[must_use]
+    pub fn robots(&self) -> RobotsClient<Way> {
+        self.robots.clone()
+    }
+
+    /// The generated client of questions.
+    #[must_use]
+    pub fn queries(&self) -> QueriesClient<Way> {
+        self.queries.clone()
+    }
+
+    /// The generated client of the daemon itself.
+    #[must_use]
+    pub fn server(&self) -> ServerClient<Way> {
+        self.server.clone()
+    }
+
     /// Version and threads of the daemon.
     ///
     /// # Errors
     /// [`ClientError`].
     pub async fn server_info(&self) -> Result<RemoteServer, ClientError> {
-        let info = self.server.clone().get_server_info(v1::GetServerInfoRequest {}).await?.into_inner();
+        let info = self.server().get_server_info(v1::GetServerInfoRequest {}).await?.into_inner();
         Ok(RemoteServer { version: info.version, threads: info.threads as usize })
     }
 
@@ -195,14 +225,14 @@ impl Client {
         let hash = ContentHash::of(file);
         let sha256 = hash.to_string();
         let asked = v1::HasAssetsRequest { sha256: vec![sha256.clone()] };
-        if self.assets.clone().has_assets(asked).await?.into_inner().present == [true] {
+        if self.assets().has_assets(asked).await?.into_inner().present == [true] {
             return Ok(hash);
         }
         let header = Part::Header(v1::AssetHeader { sha256, bytes: file.len() as u64 });
         let chunks = file.chunks(CHUNK).map(|chunk| Part::Chunk(chunk.to_vec().into()));
         let parts: Vec<v1::PutAssetRequest> =
             std::iter::once(header).chain(chunks).map(|part| v1::PutAssetRequest { part: Some(part) }).collect();
-        self.assets.clone().put_asset(tokio_stream::iter(parts)).await?;
+        self.assets().put_asset(tokio_stream::iter(parts)).await?;
         Ok(hash)
     }
 
@@ -212,8 +242,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn load_robot(&self, description: &RobotDescription) -> Result<RemoteRobot, ClientError> {
         let request = to_proto::load_robot_request(description);
-        let robot =
-            self.robots.clone().load_robot(request).await?.into_inner().robot.ok_or(ClientError::Missing("robot"))?;
+        let robot = self.robots().load_robot(request).await?.into_inner().robot.ok_or(ClientError::Missing("robot"))?;
         Ok(RemoteRobot {
             id: robot.id,
             name: robot.name,
@@ -229,7 +258,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn create_scene(&self, name: &str) -> Result<Epoch, ClientError> {
         let request = v1::CreateSceneRequest { name: name.to_owned(), ..v1::CreateSceneRequest::default() };
-        let scene = self.scenes.clone().create_scene(request).await?.into_inner().scene;
+        let scene = self.scenes().create_scene(request).await?.into_inner().scene;
         Ok(Epoch(scene.ok_or(ClientError::Missing("scene"))?.epoch))
     }
 
@@ -238,7 +267,7 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub async fn delete_scene(&self, name: &str) -> Result<(), ClientError> {
-        self.scenes.clone().delete_scene(v1::DeleteSceneRequest { scene: name.to_owned() }).await?;
+        self.scenes().delete_scene(v1::DeleteSceneRequest { scene: name.to_owned() }).await?;
         Ok(())
     }
 
@@ -252,7 +281,7 @@ impl Client {
             edits: edits.iter().map(edit).collect(),
             ..v1::ApplyRequest::default()
         };
-        let response = self.scenes.clone().apply(request).await?.into_inner();
+        let response = self.scenes().apply(request).await?.into_inner();
         let added = response.added.into_iter().map(BodyId).collect();
         let applied = Applied { revision: Revision(response.revision), added };
         Ok(Changed { epoch: Epoch(response.epoch), applied })
@@ -264,7 +293,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn check_states(&self, target: &Target, question: &CheckStates) -> Result<Answer, ClientError> {
         let request = to_proto::check_states_request(target, question);
-        let response = self.queries.clone().check_states(request).await?.into_inner();
+        let response = self.queries().check_states(request).await?.into_inner();
         plain(response.answer)
     }
 
@@ -273,7 +302,7 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub async fn check_motions(&self, target: &Target, question: &CheckMotions) -> Result<Answer, ClientError> {
-        let mut queries = self.queries.clone();
+        let mut queries = self.queries();
         let answer = match question.motions {
             Motions::Edges => {
                 let request = to_proto::check_motions_request(target, question);
@@ -295,7 +324,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn clearance(&self, target: &Target, question: &Clearance) -> Result<Answer, ClientError> {
         let request = to_proto::clearance_request(target, question);
-        plain(self.queries.clone().clearance(request).await?.into_inner().answer)
+        plain(self.queries().clearance(request).await?.into_inner().answer)
     }
 
     /// What touches?
@@ -304,7 +333,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn collide(&self, target: &Target, question: &PairQuery) -> Result<Answer, ClientError> {
         let request = to_proto::collide_request(target, question);
-        plain(self.queries.clone().collide(request).await?.into_inner().answer)
+        plain(self.queries().collide(request).await?.into_inner().answer)
     }
 
     /// How far is the nearest?
@@ -313,7 +342,7 @@ impl Client {
     /// [`ClientError`].
     pub async fn distance(&self, target: &Target, question: &PairQuery) -> Result<Answer, ClientError> {
         let request = to_proto::distance_request(target, question);
-        plain(self.queries.clone().distance(request).await?.into_inner().answer)
+        plain(self.queries().distance(request).await?.into_inner().answer)
     }
 }
 

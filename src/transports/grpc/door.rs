@@ -35,7 +35,7 @@ use crate::transports::wire::v1::server_server::ServerServer;
 /// What the door is called.
 pub(super) const DOOR: &str = "grpc";
 /// How much one connection may send before it has to wait, bytes: the default of 64 KiB caps long links.
-const WINDOW: u32 = 8 << 20;
+pub(super) const WINDOW: u32 = 8 << 20;
 /// Calls of one connection at a time.
 const CALLS_PER_CONNECTION: u32 = 256;
 /// A connection without traffic is asked for a sign of life this often, and closed when none comes.

@@ -113,7 +113,7 @@ impl HttpBody for Answered {
                 Err(mut frame) => {
                     if let Some(trailers) = frame.trailers_mut() {
                         name_message_limit(trailers);
-                        std::mem::take(&mut self.observed).end(outcome_of(trailers));
+                        self.observed.end(outcome_of(trailers));
                     }
                     return Poll::Ready(Some(Ok(frame)));
                 }

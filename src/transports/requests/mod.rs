@@ -5,6 +5,7 @@
 
 mod assets;
 mod call;
+mod effort;
 mod motions;
 mod poses;
 mod queries;

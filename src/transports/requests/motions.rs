@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::effort::Effort;
 use super::queries::{answer, suppose};
 use crate::query::Answer;
 use crate::service::{Service, ServiceError, View};
@@ -49,7 +50,7 @@ pub async fn clearance(
 ) -> Result<v1::ClearanceResponse, ServiceError> {
     let (context, library) = (message.context.clone(), Arc::clone(service.library()));
     let question = move |view: &View| view.clearance(&from_proto::clearance(&message, view.worlds(), &library)?);
-    Ok(v1::ClearanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
+    Ok(v1::ClearanceResponse { answer: Some(answer(service, context, timeout, Effort::Any, question).await?) })
 }
 
 /// A question whose items are motions.
@@ -65,5 +66,5 @@ async fn moving(
         let (motions, bulk) = to_proto::motions(&answer, form);
         Ok((to_proto::answer(&answer, form), motions, bulk))
     };
-    suppose(service, context, timeout, encoded, |(answer, _, _), added| answer.added_bodies = added).await
+    suppose(service, context, timeout, Effort::Any, encoded, |(answer, _, _), added| answer.added_bodies = added).await
 }

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::effort::Effort;
 use crate::query::Answer;
-use crate::service::{ContactWatch, Patience, Service, ServiceError, View};
+use crate::service::{ContactWatch, Patience, Service, ServiceError, Target, View};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
 /// The rpc `CheckStates`.
@@ -16,9 +17,9 @@ pub async fn check_states(
     message: v1::CheckStatesRequest,
     timeout: Option<Duration>,
 ) -> Result<v1::CheckStatesResponse, ServiceError> {
-    let context = message.context.clone();
+    let (context, effort) = (message.context.clone(), Effort::of_states(&message));
     let question = move |view: &View| view.check_states(&from_proto::check_states(&message, view.snapshot())?);
-    Ok(v1::CheckStatesResponse { answer: Some(answer(service, context, timeout, question).await?) })
+    Ok(v1::CheckStatesResponse { answer: Some(answer(service, context, timeout, effort, question).await?) })
 }
 
 /// The rpc `Collide`.
@@ -31,8 +32,9 @@ pub async fn collide(
     timeout: Option<Duration>,
 ) -> Result<v1::CollideResponse, ServiceError> {
     let (context, library) = (message.context.clone(), Arc::clone(service.library()));
+    let effort = Effort::of_subjects(&message.items, context.as_ref());
     let question = move |view: &View| view.collide(&from_proto::collide(&message, view.worlds(), &library)?);
-    Ok(v1::CollideResponse { answer: Some(answer(service, context, timeout, question).await?) })
+    Ok(v1::CollideResponse { answer: Some(answer(service, context, timeout, effort, question).await?) })
 }
 
 /// The rpc `Distance`.
@@ -44,9 +46,13 @@ pub async fn distance(
     message: v1::DistanceRequest,
     timeout: Option<Duration>,
 ) -> Result<v1::DistanceResponse, ServiceError> {
-    let (context, library) = (message.context.clone(), Arc::clone(service.library()));
+    let (mut context, library) = (message.context.clone(), Arc::clone(service.library()));
+    if let Some(context) = &mut context {
+        context.wants.get_or_insert_default().distance = true;
+    }
+    let effort = Effort::of_subjects(&message.items, context.as_ref());
     let question = move |view: &View| view.distance(&from_proto::distance(&message, view.worlds(), &library)?);
-    Ok(v1::DistanceResponse { answer: Some(answer(service, context, timeout, question).await?) })
+    Ok(v1::DistanceResponse { answer: Some(answer(service, context, timeout, effort, question).await?) })
 }
 
 /// The rpc `CastRays`.
@@ -58,7 +64,7 @@ pub async fn cast_rays(
     message: v1::CastRaysRequest,
     timeout: Option<Duration>,
 ) -> Result<v1::CastRaysResponse, ServiceError> {
-    ask(service, message.context.clone(), timeout, move |view| {
+    ask(service, message.context.clone(), timeout, Effort::of_rays(&message), move |view| {
         let answers = view.cast_rays(&from_proto::cast_rays(&message, view.snapshot())?)?;
         Ok(to_proto::cast_rays_response(&answers))
     })
@@ -75,7 +81,7 @@ pub async fn cast_shapes(
     timeout: Option<Duration>,
 ) -> Result<v1::CastShapesResponse, ServiceError> {
     let library = Arc::clone(service.library());
-    ask(service, message.context.clone(), timeout, move |view| {
+    ask(service, message.context.clone(), timeout, Effort::Any, move |view| {
         let answers = view.cast_shapes(&from_proto::cast_shapes(&message, view.snapshot(), &library)?)?;
         Ok(to_proto::cast_shapes_response(&answers))
     })
@@ -92,7 +98,7 @@ pub async fn check_moving_pairs(
     timeout: Option<Duration>,
 ) -> Result<v1::CheckMovingPairsResponse, ServiceError> {
     let library = Arc::clone(service.library());
-    ask(service, message.context.clone(), timeout, move |view| {
+    ask(service, message.context.clone(), timeout, Effort::Any, move |view| {
         let asked = from_proto::check_moving_pairs(&message, view.snapshot(), &library)?;
         Ok(to_proto::check_moving_pairs_response(&view.check_moving_pairs(&asked)?))
     })
@@ -109,7 +115,7 @@ pub async fn overlap(
     timeout: Option<Duration>,
 ) -> Result<v1::OverlapResponse, ServiceError> {
     let library = Arc::clone(service.library());
-    ask(service, message.context.clone(), timeout, move |view| {
+    ask(service, message.context.clone(), timeout, Effort::Any, move |view| {
         let answers = view.overlap(&from_proto::overlap(&message, view.snapshot(), &library)?)?;
         Ok(to_proto::overlap_response(&answers))
     })
@@ -126,7 +132,8 @@ pub async fn nearest_bodies(
     timeout: Option<Duration>,
 ) -> Result<v1::NearestBodiesResponse, ServiceError> {
     let library = Arc::clone(service.library());
-    ask(service, message.context.clone(), timeout, move |view| {
+    let effort = Effort::of_subjects(&message.items, message.context.as_ref());
+    ask(service, message.context.clone(), timeout, effort, move |view| {
         let answers = view.nearest_bodies(&from_proto::nearest_bodies(&message, view.snapshot(), &library)?)?;
         Ok(to_proto::nearest_bodies_response(&answers))
     })
@@ -153,12 +160,13 @@ pub(super) async fn ask<T: Send + 'static>(
     service: &Arc<Service>,
     context: Option<v1::Context>,
     timeout: Option<Duration>,
+    effort: Effort,
     question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
 ) -> Result<T, ServiceError> {
     from_proto::no_overlays(context.as_ref())?;
     let patience = from_proto::patience(timeout, context.as_ref())?;
     let target = from_proto::target(context.as_ref())?;
-    service.ask(&target, patience, question).await
+    put(service, (&target, patience), effort, question).await
 }
 
 /// A question that is answered item by item, as if the edits of its overlays had been applied.
@@ -166,11 +174,12 @@ pub(super) async fn answer(
     service: &Arc<Service>,
     context: Option<v1::Context>,
     timeout: Option<Duration>,
+    effort: Effort,
     question: impl FnOnce(&View) -> Result<Answer, ServiceError> + Send + 'static,
 ) -> Result<v1::Answer, ServiceError> {
     let form = from_proto::answer_form(context.as_ref())?;
     let encoded = move |view: &View| Ok(to_proto::answer(&question(view)?, form));
-    suppose(service, context, timeout, encoded, |answer, added| answer.added_bodies = added).await
+    suppose(service, context, timeout, effort, encoded, |answer, added| answer.added_bodies = added).await
 }
 
 /// Asks in the worlds of the overlays, and lets `name` put the bodies that they added into the answer.
@@ -178,6 +187,7 @@ pub(super) async fn suppose<T: Send + 'static>(
     service: &Arc<Service>,
     context: Option<v1::Context>,
     timeout: Option<Duration>,
+    effort: Effort,
     question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
     name: impl FnOnce(&mut T, Vec<v1::AddedBody>) + Send + 'static,
 ) -> Result<T, ServiceError> {
@@ -193,5 +203,18 @@ pub(super) async fn suppose<T: Send + 'static>(
         }
         _ => question(view),
     };
-    service.ask(&target, patience, supposed).await
+    put(service, (&target, patience), effort, supposed).await
+}
+
+/// Puts a question where the effort it takes belongs.
+async fn put<T: Send + 'static>(
+    service: &Arc<Service>,
+    (target, patience): (&Target, Patience),
+    effort: Effort,
+    question: impl FnOnce(&View) -> Result<T, ServiceError> + Send + 'static,
+) -> Result<T, ServiceError> {
+    match effort {
+        Effort::Little => service.ask_at_once(target, patience, question).await,
+        Effort::Any => service.ask(target, patience, question).await,
+    }
 }

@@ -39,9 +39,12 @@ pub fn message(frame: &Frame, answer: &Answer, wants: Wants, motions: bool) -> V
     let mut writer = Writer::new(ResponseHeader::BYTES, ROOM);
     writer.bytes(kind::VERDICTS, items.iter().map(|item| codes::verdict(item.verdict).0));
     writer.bytes(kind::INDETERMINACIES, items.iter().map(|item| codes::verdict(item.verdict).1));
-    brackets(&mut writer, kind::NEAREST_LOWER, items, |item| item.nearest.as_ref());
-    brackets(&mut writer, kind::SELF_LOWER, items, |item| item.nearest_self.as_ref());
-    brackets(&mut writer, kind::SCENE_LOWER, items, |item| item.nearest_scene.as_ref());
+    // The pair that decides a verdict is not the nearest.
+    if wants.closed().distance {
+        brackets(&mut writer, kind::NEAREST_LOWER, items, |item| item.nearest.as_ref());
+        brackets(&mut writer, kind::SELF_LOWER, items, |item| item.nearest_self.as_ref());
+        brackets(&mut writer, kind::SCENE_LOWER, items, |item| item.nearest_scene.as_ref());
+    }
     problems(&mut writer, items.iter().map(|item| item.problem.as_deref()));
     if motions {
         motion_columns(&mut writer, items);
@@ -78,13 +81,13 @@ pub fn rays_message(frame: &Frame, answers: &Answers<CastItem>) -> Vec<u8> {
     writer.bytes(kind::INDETERMINACIES, items.iter().map(|item| codes::cast_verdict(item.verdict).1));
     problems(&mut writer, items.iter().map(|item| item.problem.as_deref()));
     writer.bytes(kind::TRUNCATED, items.iter().map(|item| u8::from(item.truncated)));
-    writer.doubles(kind::FREE_UNTIL, 1, items.iter().map(|item| item.free_until));
+    writer.doubles_of(kind::FREE_UNTIL, 1, items.iter().map(|item| item.free_until));
     hits(&mut writer, items);
     writer.counts(kind::GRAZED_COUNTS, items.iter().map(|item| item.grazed.len() as u32));
     let grazed = || items.iter().flat_map(|item| &item.grazed);
     writer.integers(kind::GRAZED_BODIES, grazed().map(|one| one.body.0));
-    writer.doubles(kind::GRAZED_LOWER, 1, grazed().map(|one| one.lower));
-    writer.doubles(kind::GRAZED_UPPER, 1, grazed().map(|one| one.upper));
+    writer.doubles_of(kind::GRAZED_LOWER, 1, grazed().map(|one| one.lower));
+    writer.doubles_of(kind::GRAZED_UPPER, 1, grazed().map(|one| one.upper));
     writer.bytes(kind::GRAZED_INDETERMINACIES, grazed().map(|one| codes::indeterminacy(one.why)));
     let mut cost = Cost::default();
     items.iter().for_each(|item| cost += item.cost);
@@ -162,7 +165,7 @@ fn brackets(
     let numbers: [fn(&PairAnswer) -> f64; 3] =
         [|pair| pair.bracket.lower, |pair| pair.bracket.upper, |pair| pair.signed_distance];
     for (column, number) in (first..).zip(numbers) {
-        writer.doubles(column, 1, items.iter().map(|item| pair_of(item).map_or(f64::NAN, number)));
+        writer.doubles_of(column, 1, items.iter().map(|item| pair_of(item).map_or(f64::NAN, number)));
     }
 }
 
@@ -185,7 +188,7 @@ fn motion_columns(writer: &mut Writer, items: &[ItemAnswer]) {
     ];
     for (column, number) in (kind::FREE_UNTIL..).zip(numbers) {
         let rows = items.iter().map(|item| item.motion.as_ref().and_then(number).unwrap_or(f64::NAN));
-        writer.doubles(column, 1, rows);
+        writer.doubles_of(column, 1, rows);
     }
 }
 
@@ -218,11 +221,11 @@ fn witnesses<'a>(writer: &mut Writer, witnesses: impl Iterator<Item = Option<&'a
     let vectors: [fn(&Witness) -> Vec3; 3] = [|w| w.point_on_a, |w| w.point_on_b, |w| w.normal];
     for (column, vector) in (kind::NEAREST_POINT_ON_A..).zip(vectors) {
         let rows = witnesses.clone().map(|witness| witness.map_or([f64::NAN; 3], |witness| vector(witness).into()));
-        writer.doubles(column, 3, rows.flatten());
+        writer.doubles_of(column, 3, rows.flatten());
     }
     let numbers: [fn(&Witness) -> f64; 2] = [|w| w.point_error, |w| w.normal_error];
     for (column, number) in (kind::NEAREST_POINT_ERROR..).zip(numbers) {
-        writer.doubles(column, 1, witnesses.clone().map(|witness| witness.map_or(f64::NAN, number)));
+        writer.doubles_of(column, 1, witnesses.clone().map(|witness| witness.map_or(f64::NAN, number)));
     }
 }
 
@@ -231,9 +234,9 @@ fn listed_pairs(writer: &mut Writer, items: &[ItemAnswer]) {
     writer.bytes(kind::TRUNCATED, items.iter().map(|item| u8::from(item.truncated)));
     writer.counts(kind::PAIR_COUNTS, items.iter().map(|item| item.pairs.len() as u32));
     sides(writer, kind::PAIR_A_KIND, pairs().map(Some));
-    writer.doubles(kind::PAIR_LOWER, 1, pairs().map(|pair| pair.bracket.lower));
-    writer.doubles(kind::PAIR_UPPER, 1, pairs().map(|pair| pair.bracket.upper));
-    writer.doubles(kind::PAIR_SIGNED_DISTANCE, 1, pairs().map(|pair| pair.signed_distance));
+    writer.doubles_of(kind::PAIR_LOWER, 1, pairs().map(|pair| pair.bracket.lower));
+    writer.doubles_of(kind::PAIR_UPPER, 1, pairs().map(|pair| pair.bracket.upper));
+    writer.doubles_of(kind::PAIR_SIGNED_DISTANCE, 1, pairs().map(|pair| pair.signed_distance));
 }
 
 fn hits(writer: &mut Writer, items: &[CastItem]) {
@@ -242,9 +245,9 @@ fn hits(writer: &mut Writer, items: &[CastItem]) {
     writer.counts(kind::HIT_COUNTS, items.iter().map(|item| item.hits.len() as u32));
     writer.integers(kind::HIT_BODIES, hits().map(|hit| hit.body.0));
     writer.counts(kind::HIT_SUBSHAPES, hits().map(|hit| hit.subshape));
-    writer.doubles(kind::HIT_LOWER, 1, hits().map(|hit| hit.lower));
-    writer.doubles(kind::HIT_UPPER, 1, hits().map(|hit| hit.upper));
+    writer.doubles_of(kind::HIT_LOWER, 1, hits().map(|hit| hit.lower));
+    writer.doubles_of(kind::HIT_UPPER, 1, hits().map(|hit| hit.upper));
     writer.bytes(kind::HIT_AT_START, hits().map(|hit| u8::from(hit.at_start)));
-    writer.doubles(kind::HIT_POINTS, 3, vectors(|hit| hit.point));
-    writer.doubles(kind::HIT_NORMALS, 3, vectors(|hit| hit.normal));
+    writer.doubles_of(kind::HIT_POINTS, 3, vectors(|hit| hit.point));
+    writer.doubles_of(kind::HIT_NORMALS, 3, vectors(|hit| hit.normal));
 }

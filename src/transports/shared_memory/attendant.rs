@@ -1,8 +1,8 @@
 //! Who answers at the door? One thread that sleeps until a request comes, answers small ones itself and hands the
 //! others to the threads that answer questions.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,6 @@ use iceoryx2::active_request::ActiveRequest;
 use iceoryx2::port::LoanError;
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::prelude::CallbackProgression;
-use prost::bytes::Bytes;
 use tokio::runtime::Handle;
 
 use super::answer::{error_message, response_message};
@@ -22,11 +21,11 @@ use super::request::{Called, ClientId, Nonce, PairsOf, Question, Received, Reque
 use super::subjects::Asked;
 use crate::limits::LimitExceeded;
 use crate::query::{Motions, Subject};
-use crate::service::{Asker, Call, Outcome, Rpc, Service, ServiceError, Traffic};
+use crate::service::{Asker, Call, Outcome, Rpc, Service, ServiceError, Traffic, View, Waiting};
 use crate::transports::requests;
 
 /// A request that waits for its answer.
-type Waiting = ActiveRequest<Ipc, [Line], (), [Line], ()>;
+type Pending = ActiveRequest<Ipc, [Line], (), [Line], ()>;
 
 /// Questions of no more items than this are answered on the door's own thread: to hand them over costs more.
 const SMALL: usize = 8;
@@ -49,6 +48,10 @@ pub(super) struct Attendant {
     runtime: Handle,
     spin: Duration,
     draining: Arc<AtomicBool>,
+    /// The last request: its memory serves the next.
+    copy: Vec<u8>,
+    /// Requests that others work on, and what stops the work.
+    handed_over: Vec<(Weak<Mutex<Pending>>, Waiting)>,
 }
 
 /// What the thread shares with work that was handed over.
@@ -77,14 +80,14 @@ impl Attendant {
     ) -> Self {
         let (traffic, answered) = (service.traffic(DOOR), Arc::clone(&ports.answered));
         let desk = Desk { service, traffic, answered, handed_over: AtomicUsize::new(0) };
-        Self { ports, desk: Arc::new(desk), runtime, spin, draining }
+        Self { ports, desk: Arc::new(desk), runtime, spin, draining, copy: Vec::new(), handed_over: Vec::new() }
     }
 
     /// Answers until the door drains and everything under way is answered.
     ///
     /// # Errors
     /// The memory is taken away.
-    pub fn attend(self) -> Result<(), String> {
+    pub fn attend(mut self) -> Result<(), String> {
         let mut cleaned = Instant::now();
         loop {
             let draining = self.draining.load(Ordering::Acquire);
@@ -99,16 +102,22 @@ impl Attendant {
             if any && self.comes_soon() {
                 continue;
             }
-            let look = if draining { LOOK_DRAINING } else { LOOK };
+            // Work for nobody stops here; what is answered has no request left.
+            self.handed_over.retain(|(pending, _)| pending.upgrade().is_some_and(|pending| is_wanted(&pending)));
+            let look = match (draining, self.handed_over.is_empty()) {
+                (true, _) => LOOK_DRAINING,
+                (false, false) => STILL_THERE,
+                (false, true) => LOOK,
+            };
             let woken = sleep(&self.ports.asked, look)?;
-            if woken == 0 && !draining || cleaned.elapsed() > CLEANUP {
+            if woken == 0 && look == LOOK || cleaned.elapsed() > CLEANUP {
                 self.ports.node.try_cleanup_dead_nodes();
                 cleaned = Instant::now();
             }
         }
     }
 
-    fn next(&self) -> Option<Waiting> {
+    fn next(&self) -> Option<Pending> {
         // A broken connection is its client's misfortune, not the door's.
         self.ports.server.receive().unwrap_or_else(|error| {
             tracing::warn!("a connection of shared memory cannot be read: {error}");
@@ -128,18 +137,19 @@ impl Attendant {
         false
     }
 
-    fn take(&self, waiting: Waiting) {
+    fn take(&mut self, waiting: Pending) {
         let limits = self.desk.service.limits();
         let (most, most_answered) = (limits.max_shared_memory_request_bytes, limits.max_shared_memory_response_bytes);
         // From here on only the copy counts: the client may go on writing to its memory.
         let shared = waiting.payload().as_flattened();
         let size = LimitExceeded::check("max_shared_memory_request_bytes", shared.len(), most);
-        let message = Bytes::copy_from_slice(shared.get(..shared.len().min(most)).unwrap_or_default());
         self.desk.traffic.received_bytes.add(shared.len() as u64);
-        let header = RequestHeader::read(&message);
+        self.copy.clear();
+        self.copy.extend_from_slice(shared.get(..shared.len().min(most)).unwrap_or_default());
+        let message = &self.copy;
+        let header = RequestHeader::read(message);
         let caller = Caller { nonce: header.nonce, client: header.client };
-        let decoded = size.map_err(ServiceError::from).and_then(|()| decode(&message, limits));
-        drop(message);
+        let decoded = size.map_err(ServiceError::from).and_then(|()| decode(message, limits));
         let request = match decoded {
             Ok(Received::Asked(request)) => *request,
             Ok(Received::Called(called)) => return self.call(waiting, caller, called),
@@ -157,23 +167,47 @@ impl Attendant {
                 return self.desk.give(&waiting, caller, &message_of(caller.nonce, answer));
             }
         }
-        self.hand_over(waiting, caller, request, call);
+        self.hand_over(waiting, caller, request, Arc::new(call));
     }
 
-    fn hand_over(&self, waiting: Waiting, caller: Caller, request: Request, call: Call) {
+    /// Has the threads that answer questions send the answer, too: a way back over this thread would cost a wake-up.
+    fn hand_over(&mut self, waiting: Pending, caller: Caller, request: Request, call: Arc<Call>) {
+        let (waiting, request) = (Arc::new(Mutex::new(waiting)), Arc::new(request));
+        let most = self.desk.service.limits().max_shared_memory_response_bytes;
+        let (pending, counted) = (Arc::clone(&waiting), Counted::new(&self.desk));
+        let ended = Arc::clone(&call);
+        let then = move |answer| {
+            ended.end(Outcome::of_result(&answer));
+            counted.0.give(&locked(&pending), caller, &message_of(caller.nonce, answer));
+        };
+        let asked = Arc::clone(&request);
+        let question = move |view: &View| answered(&asked, caller.nonce, most, view);
+        let service = &self.desk.service;
+        match call.work_here(|| service.ask_then(&request.target, request.patience, question, then)) {
+            Ok(Some(work)) => self.handed_over.push((Arc::downgrade(&waiting), work)),
+            Ok(None) => self.wait(waiting, caller, request, call),
+            Err(error) => {
+                call.end(Outcome::of(&error));
+                self.desk.give(&locked(&waiting), caller, &error_message(caller.nonce, &error));
+            }
+        }
+    }
+
+    /// Waits for a revision that is still to come.
+    fn wait(&self, waiting: Arc<Mutex<Pending>>, caller: Caller, request: Arc<Request>, call: Arc<Call>) {
         let service = Arc::clone(&self.desk.service);
         self.work(waiting, caller, async move {
             let most = service.limits().max_shared_memory_response_bytes;
-            let (target, patience) = (request.target.clone(), request.patience);
-            let question = move |view: &_| answered(&request, caller.nonce, most, view);
-            call.answer(service.ask(&target, patience, question)).await
+            let asked = Arc::clone(&request);
+            let question = move |view: &View| answered(&asked, caller.nonce, most, view);
+            call.answer(service.ask(&request.target, request.patience, question)).await
         });
     }
 
-    fn call(&self, waiting: Waiting, caller: Caller, Called { rpc, message, timeout }: Called) {
+    fn call(&self, waiting: Pending, caller: Caller, Called { rpc, message, timeout }: Called) {
         let service = Arc::clone(&self.desk.service);
         let call = self.desk.begin_call(requests::rpc_named(&rpc), caller);
-        self.work(waiting, caller, async move {
+        self.work(Arc::new(Mutex::new(waiting)), caller, async move {
             let response = call.answer(requests::call(&service, &rpc, message, timeout)).await?;
             let message = response_message(caller.nonce, &response);
             let most = service.limits().max_shared_memory_response_bytes;
@@ -182,24 +216,22 @@ impl Attendant {
         });
     }
 
-    /// Has others work on the answer, as long as its caller is there.
+    /// Has a task work on the answer, as long as its caller is there.
     fn work(
         &self,
-        waiting: Waiting,
+        waiting: Arc<Mutex<Pending>>,
         caller: Caller,
         answering: impl Future<Output = Result<Vec<u8>, ServiceError>> + Send + 'static,
     ) {
-        let desk = Arc::clone(&self.desk);
-        desk.handed_over.fetch_add(1, Ordering::AcqRel);
+        let counted = Counted::new(&self.desk);
         self.runtime.spawn(async move {
-            // Counted down however the work ends.
-            let _counted = Counted(Arc::clone(&desk));
+            let desk = &counted.0;
             tokio::pin!(answering);
             loop {
                 match tokio::time::timeout(STILL_THERE, &mut answering).await {
-                    Ok(answer) => return desk.give(&waiting, caller, &message_of(caller.nonce, answer)),
+                    Ok(answer) => return desk.give(&locked(&waiting), caller, &message_of(caller.nonce, answer)),
                     // Dropping the question stops the work.
-                    Err(_) if !waiting.is_connected() => return,
+                    Err(_) if !is_wanted(&waiting) => return,
                     Err(_) => {}
                 }
             }
@@ -207,8 +239,25 @@ impl Attendant {
     }
 }
 
-/// Gives a place back.
+/// Whether the caller is still there. While the answer is being sent, it counts as there.
+fn is_wanted(waiting: &Mutex<Pending>) -> bool {
+    waiting.try_lock().map_or(true, |waiting| waiting.is_connected())
+}
+
+/// Nothing behind the lock can be left half changed.
+fn locked(waiting: &Mutex<Pending>) -> MutexGuard<'_, Pending> {
+    waiting.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A request that is counted as handed over, however the work on it ends.
 struct Counted(Arc<Desk>);
+
+impl Counted {
+    fn new(desk: &Arc<Desk>) -> Self {
+        desk.handed_over.fetch_add(1, Ordering::AcqRel);
+        Self(Arc::clone(desk))
+    }
+}
 
 impl Drop for Counted {
     fn drop(&mut self) {
@@ -253,7 +302,7 @@ impl Desk {
 
     /// Sends an answer and wakes the one who waits for it. A caller that is gone, or does not fetch its answers, gets
     /// none: it has stopped waiting, or will by its own deadline.
-    fn give(&self, waiting: &Waiting, caller: Caller, message: &[u8]) {
+    fn give(&self, waiting: &Pending, caller: Caller, message: &[u8]) {
         self.traffic.sent_bytes.add(message.len() as u64);
         if let Err(problem) = self.try_give(waiting, message) {
             tracing::warn!("an answer through shared memory was not delivered: {problem}");
@@ -261,7 +310,7 @@ impl Desk {
         self.wake(caller.client);
     }
 
-    fn try_give(&self, waiting: &Waiting, message: &[u8]) -> Result<(), String> {
+    fn try_give(&self, waiting: &Pending, message: &[u8]) -> Result<(), String> {
         let (lines, until) = (lines(message), Instant::now() + ROOM_PATIENCE);
         let room = loop {
             // A dead client's slot may have a new owner; the nonce keeps the new one safe, this spares it the work.

@@ -18,7 +18,7 @@ use super::endpoint::{
     BadEndpoint, Endpoint, Events, Ipc, Line, Questions, attribute, lines, listener_name, sleep, told,
 };
 use super::layout::{ABI_HASH, ALIGNMENT, kind};
-use super::message::{Ask, Envelope, call_message, request_message};
+use super::message::{Ask, Envelope, call_message, request_message_in};
 use super::reply::{Came, Refusal, Reply, decode};
 use super::request::{ClientId, Nonce};
 use super::sections::Malformed;
@@ -108,16 +108,38 @@ pub struct Client {
     most_bytes: usize,
     questions: Questions,
     node: Node<Ipc>,
+    nonces: Nonces,
+    /// The last request: its memory serves the next.
+    message: Vec<u8>,
 }
 
-fn random() -> Result<[u8; 16], ClientError> {
-    let mut bytes = [0; 16];
-    let mut filled = 0;
-    while filled < bytes.len() {
-        let more = rustix::rand::getrandom(&mut bytes[filled..], rustix::rand::GetRandomFlags::empty());
-        filled += more.map_err(|error| ClientError::System(error.to_string()))?;
+/// Random bytes, fetched for many requests at a time.
+#[derive(Debug)]
+struct Nonces {
+    bytes: [u8; 1024],
+    used: usize,
+}
+
+impl Nonces {
+    fn new() -> Self {
+        Self { bytes: [0; 1024], used: 1024 }
     }
-    Ok(bytes)
+
+    fn next(&mut self) -> Result<Nonce, ClientError> {
+        if self.used == self.bytes.len() {
+            let mut filled = 0;
+            while filled < self.bytes.len() {
+                let more = rustix::rand::getrandom(&mut self.bytes[filled..], rustix::rand::GetRandomFlags::empty());
+                filled += more.map_err(|error| ClientError::System(error.to_string()))?;
+            }
+            self.used = 0;
+        }
+        let mut nonce = Nonce::default();
+        let end = self.used + nonce.len();
+        nonce.copy_from_slice(&self.bytes[self.used..end]);
+        self.used = end;
+        Ok(nonce)
+    }
 }
 
 impl Client {
@@ -158,7 +180,8 @@ impl Client {
                 |error| if full(&error) { ClientError::TooManyClients } else { ClientError::System(told(error)) },
             )?;
         space::take(&endpoint.prefix())?;
-        let id = random()?;
+        let mut nonces = Nonces::new();
+        let id = nonces.next()?;
         let events = |part| -> Result<Events, ClientError> {
             let service = node.service_builder(&endpoint.service(part).map_err(ClientError::System)?);
             service.event().open().map_err(|error| nobody(told(error)))
@@ -168,7 +191,7 @@ impl Client {
         let answered = events("answered")?.listener_builder().name(&listener).create();
         let asked = asked.map_err(|error| ClientError::System(told(error)))?;
         let answered = answered.map_err(|error| ClientError::System(told(error)))?;
-        Ok(Self { port, asked, answered, id, most_bytes, questions, node })
+        Ok(Self { port, asked, answered, id, most_bytes, questions, node, nonces, message: Vec::new() })
     }
 
     /// The longest request that the daemon takes, bytes.
@@ -182,11 +205,14 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub fn ask(&mut self, target: &Target, ask: Ask<'_>, options: &Options) -> Result<Reply, ClientError> {
-        let nonce = random()?;
+        let nonce = self.nonces.next()?;
         let Options { timeout, time_budget, wants_sides, .. } = *options;
         let client = self.id;
         let envelope = Envelope { target, timeout: Some(timeout), time_budget, wants_sides, nonce, client };
-        self.exchange(&request_message(&envelope, ask), nonce, options)
+        let message = request_message_in(std::mem::take(&mut self.message), &envelope, ask);
+        let reply = self.exchange(&message, nonce, options);
+        self.message = message;
+        reply
     }
 
     /// Calls an rpc by its name, for example `Scenes/Apply`, with the bytes of its request message, and waits for the bytes
@@ -195,7 +221,7 @@ impl Client {
     /// # Errors
     /// [`ClientError`].
     pub fn call(&mut self, rpc: &str, message: &[u8], timeout: Duration) -> Result<Vec<u8>, ClientError> {
-        let nonce = random()?;
+        let nonce = self.nonces.next()?;
         let target = Target::default();
         let envelope = Envelope {
             target: &target,

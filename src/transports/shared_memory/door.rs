@@ -156,7 +156,7 @@ fn at_least(limit: &'static str, value: usize, least: usize) -> Result<(), BindE
     if value < least { Err(BindError::TooSmall { limit, value, least }) } else { Ok(()) }
 }
 
-fn questions(endpoint: &Endpoint, node: &Node<Ipc>, limits: &Limits) -> Result<Questions, String> {
+pub(super) fn questions(endpoint: &Endpoint, node: &Node<Ipc>, limits: &Limits) -> Result<Questions, String> {
     let clients = limits.max_shared_memory_clients;
     let told_to_clients = [
         (attribute::ABI_HASH, format!("{ABI_HASH:016x}")),
@@ -186,7 +186,7 @@ fn questions(endpoint: &Endpoint, node: &Node<Ipc>, limits: &Limits) -> Result<Q
         .map_err(|error| format!("{error:?}; clients of a daemon with other limits may still be there"))
 }
 
-fn events(
+pub(super) fn events(
     endpoint: &Endpoint,
     node: &Node<Ipc>,
     part: &str,

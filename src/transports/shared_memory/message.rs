@@ -132,7 +132,12 @@ const ROOM: usize = 13;
 /// The message of a request.
 #[must_use]
 pub fn request_message(envelope: &Envelope<'_>, ask: Ask<'_>) -> Vec<u8> {
-    let mut writer = Writer::new(RequestHeader::BYTES, ROOM);
+    request_message_in(Vec::new(), envelope, ask)
+}
+
+/// The same in memory that was used before.
+pub(super) fn request_message_in(memory: Vec<u8>, envelope: &Envelope<'_>, ask: Ask<'_>) -> Vec<u8> {
+    let mut writer = Writer::within(memory, RequestHeader::BYTES, ROOM);
     writer.text(kind::SCENE, &envelope.target.scene);
     let mut header = frame(envelope);
     match ask {
@@ -167,9 +172,9 @@ pub fn request_message(envelope: &Envelope<'_>, ask: Ask<'_>) -> Vec<u8> {
             header.question = question_number::RAYS;
             header.mode = codes::cast_mode_number(rays.mode);
             header.items = (rays.origins.len() / 3) as u32;
-            writer.doubles(kind::ORIGINS, 3, rays.origins.iter().copied());
-            writer.doubles(kind::DIRECTIONS, 3, rays.directions.iter().copied());
-            writer.doubles(kind::LENGTHS, 1, rays.lengths.iter().copied());
+            writer.doubles(kind::ORIGINS, 3, &rays.origins);
+            writer.doubles(kind::DIRECTIONS, 3, &rays.directions);
+            writer.doubles(kind::LENGTHS, 1, &rays.lengths);
             with_context(&mut header, &mut writer, &rays.context);
         }
     }
@@ -239,7 +244,7 @@ fn rows_of(
     // A robot without joints has rows without numbers, which columns cannot have; the daemon refuses the stride.
     header.items = if width == 0 { 0 } else { (positions.len() / row) as u32 };
     writer.text(kind::ROBOT, robot);
-    writer.doubles(kind::POSITIONS, row, positions.iter().copied());
+    writer.doubles(kind::POSITIONS, row, positions);
 }
 
 fn subjects(writer: &mut Writer, items: &[PlainSubject]) {
@@ -266,11 +271,15 @@ fn subjects(writer: &mut Writer, items: &[PlainSubject]) {
     };
     writer.bytes(kind::SUBJECT_KINDS, kinds);
     writer.integers(kind::SUBJECT_IDS, ids);
-    writer.doubles(kind::POSES, 7, items.iter().flat_map(|item| pose_row(pose(item).unwrap_or_else(Pose::identity))));
+    writer.doubles_of(
+        kind::POSES,
+        7,
+        items.iter().flat_map(|item| pose_row(pose(item).unwrap_or_else(Pose::identity))),
+    );
     if items.iter().any(|item| shape(item).is_some()) {
         writer.bytes(kind::SHAPE_KINDS, items.iter().map(|item| shape(item).map_or(0, |shape| shape.kind)));
         let parameters = items.iter().flat_map(|item| shape(item).map_or([0.0; 4], |shape| shape.parameters));
-        writer.doubles(kind::SHAPE_PARAMETERS, 4, parameters);
+        writer.doubles_of(kind::SHAPE_PARAMETERS, 4, parameters);
     }
 }
 
@@ -364,7 +373,7 @@ mod tests {
     }
 
     fn received(message: &[u8]) -> Received {
-        decode(&Bytes::copy_from_slice(message), &Limits::default()).unwrap()
+        decode(message, &Limits::default()).unwrap()
     }
 
     fn calling(rpc: &str, message: &[u8]) -> Vec<u8> {

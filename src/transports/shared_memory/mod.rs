@@ -9,6 +9,7 @@ mod attendant;
 mod client;
 mod codes;
 mod door;
+mod echo;
 mod endpoint;
 mod error_card;
 pub mod layout;
@@ -22,6 +23,7 @@ mod subjects;
 
 pub use client::{Client, ClientError, Options};
 pub use door::{BindError, Config, Listening};
+pub use echo::SharedMemoryEcho;
 pub use endpoint::{BadEndpoint, Endpoint};
 pub use message::{Ask, Envelope, PlainShape, PlainSubject, call_message, request_message};
 pub use reply::{Refusal, Reply};

@@ -5,7 +5,7 @@ use super::request::{Nonce, PairsOf, Question, Request};
 use super::sections::Malformed;
 use super::subjects;
 use crate::limits::LimitExceeded;
-use crate::query::{Motions, PairQuery};
+use crate::query::{Motions, PairQuery, Wants};
 use crate::scene::Snapshot;
 use crate::service::{ServiceError, View};
 
@@ -33,11 +33,11 @@ pub(super) fn answered(
         Question::Pairs { what, items, mode, context } => {
             let items = subjects::resolve(items, view.snapshot())?;
             let query = PairQuery { items, mode: *mode, context: context.clone() };
-            let found = match what {
-                PairsOf::Collide => view.collide(&query)?,
-                PairsOf::Distance => view.distance(&query)?,
+            let (found, wants) = match what {
+                PairsOf::Collide => (view.collide(&query)?, context.wants),
+                PairsOf::Distance => (view.distance(&query)?, Wants { distance: true, ..context.wants }),
             };
-            answer::message(&frame, &found, context.wants, false)
+            answer::message(&frame, &found, wants, false)
         }
         Question::Rays(rays) => answer::rays_message(&frame, &view.cast_rays(rays)?),
     };

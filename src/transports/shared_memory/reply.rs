@@ -1,10 +1,12 @@
 //! What does the daemon answer? A client's checked view of the message of an answer.
 
 use super::answer::{OUT_OF_TIME, STOPPED};
+use super::codes;
 use super::layout::{ABI_HASH, MAGIC, ResponseHeader, VERSION, kind};
 use super::request::Nonce;
 use super::sections::{Malformed, Sections};
 use crate::narrow_phase::Cost;
+use crate::query::Verdict;
 use crate::scene::{Epoch, Revision};
 
 /// An answer, owned by the client.
@@ -78,6 +80,19 @@ fn refusal(code: u32, sections: &Sections<'_>) -> Result<Refusal, Malformed> {
 }
 
 impl Reply {
+    /// Of states: for each whether it is proved free.
+    #[must_use]
+    pub fn free(&self) -> Vec<bool> {
+        let (free, _) = codes::verdict(Verdict::Free);
+        self.bytes(kind::VERDICTS).unwrap_or_default().iter().map(|verdict| *verdict == free).collect()
+    }
+
+    /// Bytes of the whole message.
+    #[must_use]
+    pub fn message_bytes(&self) -> usize {
+        self.message.len()
+    }
+
     /// Which life of the scene was asked.
     #[must_use]
     pub fn epoch(&self) -> Epoch {

@@ -120,16 +120,16 @@ impl From<Malformed> for ServiceError {
     }
 }
 
-/// Reads a request.
+/// Reads a request. `message` must be memory that the client cannot write to any more.
 ///
 /// # Errors
 /// A field that cannot be, or a name or message beyond its cap.
-pub fn decode(message: &Bytes, limits: &Limits) -> Result<Received, ServiceError> {
+pub fn decode(message: &[u8], limits: &Limits) -> Result<Received, ServiceError> {
     let header = RequestHeader::read(message);
     let whole = check_frame(&header, message)?;
     let sections = Sections::check(whole, RequestHeader::BYTES, header.sections)?;
     if header.question == question_number::CALL {
-        let message = message.slice_ref(sections.bytes(kind::MESSAGE).unwrap_or_default());
+        let message = Bytes::copy_from_slice(sections.bytes(kind::MESSAGE).unwrap_or_default());
         let Patience { timeout, .. } = patience(&header);
         return Ok(Received::Called(Called { rpc: rpc(&sections)?, message, timeout }));
     }

@@ -185,8 +185,15 @@ impl Writer {
     /// A message with a header of `header_bytes` and room for `room` sections.
     #[must_use]
     pub fn new(header_bytes: usize, room: usize) -> Self {
-        let data = (header_bytes + room * ENTRY_BYTES).next_multiple_of(ALIGNMENT);
-        Self { bytes: vec![0; data], header_bytes, room, written: 0 }
+        Self::within(Vec::new(), header_bytes, room)
+    }
+
+    /// The same in memory that was used before.
+    #[must_use]
+    pub fn within(mut memory: Vec<u8>, header_bytes: usize, room: usize) -> Self {
+        memory.clear();
+        memory.resize((header_bytes + room * ENTRY_BYTES).next_multiple_of(ALIGNMENT), 0);
+        Self { bytes: memory, header_bytes, room, written: 0 }
     }
 
     /// How many sections there are so far.
@@ -224,7 +231,17 @@ impl Writer {
     }
 
     /// A column of doubles, `per_row` in each row.
-    pub fn doubles(&mut self, kind: u32, per_row: usize, numbers: impl IntoIterator<Item = f64>) {
+    pub fn doubles(&mut self, kind: u32, per_row: usize, numbers: &[f64]) {
+        self.section(kind, 8 * per_row, |bytes| {
+            let begin = bytes.len();
+            bytes.resize(begin + size_of_val(numbers), 0);
+            let (places, _) = bytes[begin..].as_chunks_mut::<8>();
+            places.iter_mut().zip(numbers).for_each(|(place, number)| *place = number.to_le_bytes());
+        });
+    }
+
+    /// The same, one number after the other.
+    pub fn doubles_of(&mut self, kind: u32, per_row: usize, numbers: impl IntoIterator<Item = f64>) {
         let all = |bytes: &mut Vec<u8>| numbers.into_iter().for_each(|row| bytes.extend_from_slice(&row.to_le_bytes()));
         self.section(kind, 8 * per_row, all);
     }
@@ -262,7 +279,7 @@ mod tests {
     fn message() -> Vec<u8> {
         let mut writer = Writer::new(HEADER, 3);
         writer.text(kind::SCENE, "cell");
-        writer.doubles(kind::ORIGINS, 3, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        writer.doubles(kind::ORIGINS, 3, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         writer.counts(kind::PAIR_COUNTS, [7, 8]);
         writer.finish(|_, _, _| ())
     }

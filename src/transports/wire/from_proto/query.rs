@@ -14,8 +14,11 @@ use crate::transports::wire::v1;
 pub enum AnswerForm {
     /// One message each.
     Items,
-    /// Arrays of verdicts and brackets.
-    Bulk,
+    /// Arrays of verdicts, and of brackets where distances are wanted.
+    Bulk {
+        /// Distances are wanted.
+        brackets: bool,
+    },
 }
 
 /// Which scene is asked, and in which state.
@@ -61,7 +64,10 @@ pub fn answer_form(context: Option<&v1::Context>) -> Result<AnswerForm, ServiceE
     let number = context.map_or(0, |context| context.answer_form);
     match v1::AnswerForm::try_from(number) {
         Ok(v1::AnswerForm::Unspecified | v1::AnswerForm::Items) => Ok(AnswerForm::Items),
-        Ok(v1::AnswerForm::Bulk) => Ok(AnswerForm::Bulk),
+        Ok(v1::AnswerForm::Bulk) => {
+            let wants = context.and_then(|context| context.wants).unwrap_or_default();
+            Ok(AnswerForm::Bulk { brackets: wants.distance || wants.witness || wants.depth })
+        }
         Err(_) => Err(unknown_value(&Path::root("context").field("answer_form"), number)),
     }
 }

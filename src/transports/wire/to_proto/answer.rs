@@ -1,7 +1,7 @@
 //! Answers to questions.
 
-use super::count;
 use super::geometry::vec3;
+use super::{count, little_endian};
 use crate::narrow_phase::{Bracket, Cost, Termination};
 use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness, World, Worlds};
 use crate::scene::BodyId;
@@ -13,7 +13,7 @@ use crate::transports::wire::v1;
 pub fn answer(answer: &Answer, form: AnswerForm) -> v1::Answer {
     match form {
         AnswerForm::Items => v1::Answer { items: answer.items.iter().map(item).collect(), ..frame(answer) },
-        AnswerForm::Bulk => v1::Answer { bulk: Some(bulk(&answer.items)), ..frame(answer) },
+        AnswerForm::Bulk { brackets } => v1::Answer { bulk: Some(bulk(&answer.items, brackets)), ..frame(answer) },
     }
 }
 
@@ -59,19 +59,23 @@ fn item(item: &ItemAnswer) -> v1::ItemAnswer {
     }
 }
 
-fn bulk(items: &[ItemAnswer]) -> v1::BulkAnswer {
+fn bulk(items: &[ItemAnswer], brackets: bool) -> v1::BulkAnswer {
     // Verdicts and reasons are small enumerations; their numbers fit a byte.
     let (verdicts, indeterminacies): (Vec<u8>, Vec<u8>) =
         items.iter().map(|item| verdict(item.verdict)).map(|(verdict, why)| (verdict as u8, why as u8)).unzip();
     let problem = |(index, item): (usize, &ItemAnswer)| {
         item.problem.clone().map(|problem| v1::BulkProblem { item: count(index), problem })
     };
+    // The pair that decides a verdict is not the nearest.
+    let brackets_of = |pair_of: fn(&ItemAnswer) -> Option<&PairAnswer>| {
+        if brackets { bulk_brackets(items, pair_of) } else { None }
+    };
     v1::BulkAnswer {
         verdicts: verdicts.into(),
         indeterminacies: indeterminacies.into(),
-        nearest: bulk_brackets(items, |item| item.nearest.as_ref()),
-        nearest_self: bulk_brackets(items, |item| item.nearest_self.as_ref()),
-        nearest_scene: bulk_brackets(items, |item| item.nearest_scene.as_ref()),
+        nearest: brackets_of(|item| item.nearest.as_ref()),
+        nearest_self: brackets_of(|item| item.nearest_self.as_ref()),
+        nearest_scene: brackets_of(|item| item.nearest_scene.as_ref()),
         problems: items.iter().enumerate().filter_map(problem).collect(),
     }
 }
@@ -84,7 +88,7 @@ fn bulk_brackets(
     items.iter().any(|item| pair_of(item).is_some()).then(|| {
         let column = |number: fn(&PairAnswer) -> f64| {
             let numbers = items.iter().map(|item| pair_of(item).map_or(f64::NAN, number));
-            numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>().into()
+            little_endian(numbers)
         };
         v1::BulkBrackets {
             lower: column(|pair| pair.bracket.lower),

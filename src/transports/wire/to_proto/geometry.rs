@@ -1,5 +1,6 @@
 //! Shapes and poses.
 
+use super::little_endian;
 use crate::geometry::{Aabb, Core, HeightField, Part, Pose, Shape, TriangleMesh, Vec3};
 use crate::transports::wire::v1;
 
@@ -78,7 +79,7 @@ fn height_field(field: &HeightField) -> v1::HeightField {
 }
 
 fn numbers<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> v1::Numbers {
-    let bytes = numbers.into_iter().flat_map(|number| number.to_le_bytes()).collect();
+    let bytes = little_endian(numbers.into_iter().copied());
     v1::Numbers { form: Some(v1::numbers::Form::LittleEndian(bytes)) }
 }
 

@@ -3,11 +3,11 @@
 mod answer;
 mod cast;
 mod contact;
-mod count;
 mod geometry;
 mod health;
 mod mesh_card;
 mod motion;
+mod numbers;
 mod question;
 mod robot;
 mod scene;
@@ -27,4 +27,4 @@ pub use robot::{load_robot_request, robot_model, robot_summary};
 pub use scene::{add_body, apply_response, body_ref, door, limit, scene_contents, scene_summary};
 pub use stream::{Told, pose_stream_response, watch_response};
 
-use count::count;
+use numbers::{count, little_endian};

@@ -1,7 +1,7 @@
 //! Questions about motions and clearances as a client sends them, and what answers say of motions.
 
-use super::count;
 use super::question::{context, doubles, mode, subject};
+use super::{count, little_endian};
 use crate::query::{Answer, CheckMotions, Clearance, ClearanceOf, Find, ItemAnswer, MotionAnswer};
 use crate::service::Target;
 use crate::transports::wire::from_proto::AnswerForm;
@@ -12,7 +12,7 @@ use crate::transports::wire::v1;
 pub fn motions(answer: &Answer, form: AnswerForm) -> (Vec<v1::Motion>, Option<v1::BulkMotions>) {
     match form {
         AnswerForm::Items => (answer.items.iter().map(motion).collect(), None),
-        AnswerForm::Bulk => (Vec::new(), Some(bulk(&answer.items))),
+        AnswerForm::Bulk { .. } => (Vec::new(), Some(bulk(&answer.items))),
     }
 }
 
@@ -30,7 +30,7 @@ fn motion(item: &ItemAnswer) -> v1::Motion {
 fn bulk(items: &[ItemAnswer]) -> v1::BulkMotions {
     let column = |number: fn(&MotionAnswer) -> Option<f64>| {
         let numbers = items.iter().map(|item| item.motion.as_ref().and_then(number).unwrap_or(f64::NAN));
-        numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>().into()
+        little_endian(numbers)
     };
     v1::BulkMotions {
         free_until: column(|motion| Some(motion.free_until)),

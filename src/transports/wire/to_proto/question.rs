@@ -1,7 +1,7 @@
 //! Questions, as a client sends them.
 
-use super::count;
 use super::geometry::{pose, shape};
+use super::{count, little_endian};
 use crate::narrow_phase::Solver;
 use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants};
 use crate::service::{RevisionRule, Rule, Target};
@@ -39,8 +39,8 @@ pub fn distance_request(target: &Target, question: &PairQuery) -> v1::DistanceRe
 }
 
 pub(super) fn doubles(numbers: &[f64]) -> v1::Doubles {
-    let bytes: Vec<u8> = numbers.iter().copied().flat_map(f64::to_le_bytes).collect();
-    v1::Doubles { form: Some(v1::doubles::Form::LittleEndian(bytes.into())) }
+    let bytes = little_endian(numbers.iter().copied());
+    v1::Doubles { form: Some(v1::doubles::Form::LittleEndian(bytes)) }
 }
 
 pub(super) fn context(target: &Target, context: &Context) -> v1::Context {

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use super::super::robot_files::RobotFiles;
-use super::super::scene_file::{SceneEntry, StateLine, scenes_from, states_from};
+use super::robot_files::RobotFiles;
+use super::scene_file::{SceneEntry, StateLine, scenes_from, states_from};
 
 macro_rules! data {
     ($name:literal) => {
