@@ -6,6 +6,7 @@ pub mod cli;
 pub mod geometry;
 pub mod limits;
 pub mod narrow_phase;
+pub mod observability;
 pub mod query;
 pub mod robot;
 pub mod scene;

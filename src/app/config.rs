@@ -9,12 +9,12 @@ use serde::Deserialize;
 
 #[cfg(feature = "shared-memory")]
 use super::SharedMemory;
-use super::{GrpcSettings, SharedMemorySettings};
+use super::{GrpcSettings, LogFormat, MetricsSettings, SharedMemorySettings, TracesSettings};
 use crate::limits::Limits;
 use crate::service;
 
 /// Everything that can be chosen.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// Threads and caps.
     pub service: service::Config,
@@ -28,6 +28,16 @@ pub struct Config {
     pub drain: Duration,
     /// Which log lines are written, as a filter of `tracing`.
     pub log: String,
+    /// How log lines look.
+    pub log_format: LogFormat,
+    /// Calls that take at least so long are logged; zero: none.
+    pub slow_query: Duration,
+    /// The metrics endpoint, if there is to be one.
+    #[cfg(feature = "metrics")]
+    pub metrics: Option<crate::observability::MetricsConfig>,
+    /// Where traces go, if there are to be any.
+    #[cfg(feature = "traces")]
+    pub traces: Option<crate::observability::TracesConfig>,
 }
 
 /// What holds if nobody says.
@@ -44,6 +54,12 @@ pub mod defaults {
     pub const DRAIN_SECONDS: u64 = 10;
     /// Which log lines are written.
     pub const LOG: &str = "info";
+    /// How log lines look.
+    pub const LOG_FORMAT: super::LogFormat = super::LogFormat::Text;
+    /// Scenes that have figures of their own among the metrics, at most.
+    pub const METRICS_SCENES: usize = 50;
+    /// Of calls that come without a trace, this share begins one.
+    pub const TRACES_SAMPLE_RATIO: f64 = 0.01;
 }
 
 /// Choices of one source, as far as it says something. The same names are keys of the file.
@@ -56,10 +72,18 @@ pub struct Settings {
     pub drain_seconds: Option<u64>,
     /// Which log lines are written, as a filter of `tracing`.
     pub log: Option<String>,
+    /// How log lines look: `text` or `json`.
+    pub log_format: Option<LogFormat>,
+    /// Calls that take at least so many seconds are logged; 0, the default: none.
+    pub slow_query_seconds: Option<f64>,
     /// The gRPC door.
     pub grpc: GrpcSettings,
     /// The shared-memory door.
     pub shared_memory: SharedMemorySettings,
+    /// The metrics endpoint.
+    pub metrics: MetricsSettings,
+    /// Traces.
+    pub traces: TracesSettings,
     /// Caps by their names in [`Limits`].
     pub limits: toml::Table,
 }
@@ -87,6 +111,20 @@ pub enum ConfigError {
     #[error("limits: {problem}")]
     BadLimit {
         /// Which, and why.
+        problem: String,
+    },
+    /// This program lacks what is asked for.
+    #[error("{key}: this program was built without {key}")]
+    NotBuiltIn {
+        /// Which part of the configuration.
+        key: &'static str,
+    },
+    /// A value that cannot be.
+    #[error("{key}: {problem}")]
+    BadValue {
+        /// Which key.
+        key: &'static str,
+        /// Why.
         problem: String,
     },
     /// What is said of the gRPC door does not fit together.
@@ -126,8 +164,12 @@ impl Settings {
             threads: self.threads.or(weaker.threads),
             drain_seconds: self.drain_seconds.or(weaker.drain_seconds),
             log: self.log.or(weaker.log),
+            log_format: self.log_format.or(weaker.log_format),
+            slow_query_seconds: self.slow_query_seconds.or(weaker.slow_query_seconds),
             grpc: self.grpc.over(weaker.grpc),
             shared_memory: self.shared_memory.over(weaker.shared_memory),
+            metrics: self.metrics.over(weaker.metrics),
+            traces: self.traces.over(weaker.traces),
             limits,
         }
     }
@@ -139,6 +181,13 @@ impl Settings {
     pub fn resolve(self) -> Result<Config, ConfigError> {
         let bad = |problem: toml::de::Error| ConfigError::BadLimit { problem: problem.message().to_owned() };
         let limits = self.limits.try_into().map_err(bad)?;
+        #[cfg_attr(not(feature = "traces"), expect(unused_variables, reason = "only the check counts"))]
+        let traces = self.traces.checked()?;
+        let slow_query = slow_query(self.slow_query_seconds.unwrap_or(0.0))?;
+        #[cfg(not(feature = "metrics"))]
+        if self.metrics.is_asked_for() {
+            return Err(ConfigError::NotBuiltIn { key: "metrics" });
+        }
         Ok(Config {
             service: service::Config { threads: self.threads.unwrap_or(0), limits },
             #[cfg(feature = "grpc")]
@@ -147,8 +196,20 @@ impl Settings {
             shared_memory: self.shared_memory.resolve(),
             drain: Duration::from_secs(self.drain_seconds.unwrap_or(defaults::DRAIN_SECONDS)),
             log: self.log.unwrap_or_else(|| defaults::LOG.to_owned()),
+            log_format: self.log_format.unwrap_or(defaults::LOG_FORMAT),
+            slow_query,
+            #[cfg(feature = "metrics")]
+            metrics: self.metrics.resolve(),
+            #[cfg(feature = "traces")]
+            traces: traces
+                .map(|(endpoint, sample_ratio)| crate::observability::TracesConfig { endpoint, sample_ratio }),
         })
     }
+}
+
+fn slow_query(seconds: f64) -> Result<Duration, ConfigError> {
+    let bad = |problem: String| ConfigError::BadValue { key: "slow_query_seconds", problem };
+    Duration::try_from_secs_f64(seconds).map_err(|error| bad(format!("{seconds}: {error}")))
 }
 
 #[cfg(test)]
@@ -181,6 +242,24 @@ mod tests {
         }
         let error = settings("[limits]\nmax_items = -1").resolve().unwrap_err().to_string();
         assert!(error.starts_with("limits: "), "{error}");
+    }
+
+    #[test]
+    fn a_threshold_that_is_no_time_is_refused() {
+        for seconds in ["-1.0", "nan", "inf"] {
+            let error = settings(&format!("slow_query_seconds = {seconds}")).resolve().unwrap_err().to_string();
+            assert!(error.starts_with("slow_query_seconds: "), "{error}");
+        }
+        let config = settings("slow_query_seconds = 0.25").resolve().unwrap();
+        assert_eq!(config.slow_query, Duration::from_millis(250));
+    }
+
+    #[cfg(feature = "metrics")]
+    #[test]
+    fn an_empty_address_takes_back_an_endpoint() {
+        let file = settings("[metrics]\naddress = \"127.0.0.1:9464\"");
+        assert!(file.clone().resolve().unwrap().metrics.is_some());
+        assert_eq!(settings("[metrics]\naddress = \"\"").over(file).resolve().unwrap().metrics, None);
     }
 
     const SAMPLE: &str = include_str!("../../deploy/clearance.toml");

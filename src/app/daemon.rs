@@ -1,5 +1,6 @@
 //! The daemon's life: doors are opened, then served, then drained.
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,6 +10,7 @@ use tokio::task::{JoinError, JoinSet};
 use super::Config;
 #[cfg(feature = "shared-memory")]
 use super::SharedMemory;
+use super::observing;
 use crate::service::{Door, Service};
 #[cfg(feature = "grpc")]
 use crate::transports::grpc;
@@ -21,6 +23,8 @@ pub struct Daemon {
     service: Arc<Service>,
     doors: Doors,
     drain: Duration,
+    #[cfg(feature = "metrics")]
+    metrics: Option<observing::Metrics>,
 }
 
 /// The doors this program was built with.
@@ -38,6 +42,10 @@ pub enum StartError {
     /// The system gives no threads.
     #[error("cannot start threads: {0}")]
     Threads(String),
+    /// The metrics endpoint cannot be opened.
+    #[cfg(feature = "metrics")]
+    #[error(transparent)]
+    Metrics(#[from] crate::observability::EndpointError),
     /// A door cannot be opened.
     #[cfg(feature = "grpc")]
     #[error(transparent)]
@@ -76,10 +84,23 @@ impl Daemon {
     /// # Errors
     /// [`StartError`].
     pub async fn build(config: &Config) -> Result<Self, StartError> {
-        let service = Service::new(&config.service).map_err(|error| StartError::Threads(error.to_string()))?;
+        #[cfg_attr(not(feature = "metrics"), allow(unused_mut, reason = "metrics observe, too"))]
+        let mut observers = observing::observers(config);
+        #[cfg(feature = "metrics")]
+        let mut metrics = observing::Metrics::open(config).await?;
+        #[cfg(feature = "metrics")]
+        observers.extend(metrics.as_mut().map(observing::call_metrics));
+        let service = Service::observed(&config.service, observers);
+        let service = service.map_err(|error| StartError::Threads(error.to_string()))?;
         let doors = Doors::open(config).await?;
         doors.list().into_iter().for_each(|door| service.add_door(door));
-        Ok(Self { service, doors, drain: config.drain })
+        Ok(Self {
+            service,
+            doors,
+            drain: config.drain,
+            #[cfg(feature = "metrics")]
+            metrics,
+        })
     }
 
     /// What stands behind the doors.
@@ -94,11 +115,27 @@ impl Daemon {
         self.service.doors()
     }
 
+    /// Where metrics are told, if they are.
+    #[must_use]
+    pub fn metrics_address(&self) -> Option<SocketAddr> {
+        #[cfg(feature = "metrics")]
+        return self.metrics.as_ref().map(|metrics| metrics.endpoint.address());
+        #[cfg(not(feature = "metrics"))]
+        None
+    }
+
     /// Serves until `stop` comes. Then nothing new is taken, and what is under way has the configured time to end.
     ///
     /// # Errors
     /// A door closed by itself.
     pub async fn run(self, stop: impl Future<Output = ()>) -> Result<Drained, RunError> {
+        // Its tasks end with this function: nobody waits for those who look at metrics.
+        #[cfg(feature = "metrics")]
+        let mut watched = JoinSet::new();
+        #[cfg(feature = "metrics")]
+        if let Some(metrics) = self.metrics {
+            watched.spawn(metrics.endpoint.serve(Arc::clone(&self.service), metrics.registry));
+        }
         let (drain, told_to_drain) = watch::channel(false);
         let mut serving = tokio::spawn(self.doors.serve(Arc::clone(&self.service), told_to_drain));
         tokio::select! {

@@ -4,14 +4,21 @@ mod config;
 mod daemon;
 mod grpc_settings;
 mod logging;
+mod metrics_settings;
+mod observing;
+mod service_manager;
 mod shared_memory_settings;
 mod signals;
+mod traces_settings;
 
 pub use config::{Config, ConfigError, Settings, defaults};
 pub use daemon::{Daemon, Drained, RunError, StartError};
 pub use grpc_settings::{GrpcSettings, TlsSettings, TokenSettings, WebSettings};
-pub use logging::{BadFilter, log_to_stderr};
+pub use logging::{BadLogging, LogFormat, Logging};
+pub use metrics_settings::MetricsSettings;
+pub use service_manager::{ServiceState, tell_service_manager};
 #[cfg(feature = "shared-memory")]
 pub use shared_memory_settings::SharedMemory;
 pub use shared_memory_settings::SharedMemorySettings;
 pub use signals::stop_signal;
+pub use traces_settings::TracesSettings;

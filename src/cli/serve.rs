@@ -5,10 +5,14 @@ use std::path::PathBuf;
 
 use super::exit_code::Exit;
 use crate::app::{
+    BadLogging, LogFormat, Logging, MetricsSettings, ServiceState, TracesSettings, stop_signal, tell_service_manager,
+};
+use crate::app::{
     Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, TlsSettings,
     defaults,
 };
-use crate::app::{log_to_stderr, stop_signal};
+#[cfg(feature = "metrics")]
+use crate::observability::EndpointError;
 #[cfg(feature = "grpc")]
 use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
@@ -58,6 +62,28 @@ pub struct Serve {
     #[arg(long, value_name = "FILTER", env = "CLEARANCE_LOG",
         help = format!("Log lines written to stderr, for example `clearance=debug,warn` [default: {}]", defaults::LOG))]
     pub log: Option<String>,
+    /// How log lines look [default: text]
+    #[arg(long, value_name = "text|json", env = "CLEARANCE_LOG_FORMAT")]
+    pub log_format: Option<LogFormat>,
+    /// Log calls that take at least so many seconds, at most one line a second; 0: none [default: 0]
+    #[arg(long, value_name = "SECONDS", env = "CLEARANCE_SLOW_QUERY_SECONDS")]
+    pub slow_query_seconds: Option<f64>,
+    /// Where /metrics, /livez and /readyz are, over HTTP; port 0 takes any free one [default: nowhere]
+    #[arg(long, value_name = "HOST:PORT", env = "CLEARANCE_METRICS_ADDRESS")]
+    pub metrics_address: Option<String>,
+    /// Let them be beyond loopback: whoever reaches them reads the names of scenes and how busy the daemon is.
+    #[arg(long, env = "CLEARANCE_METRICS_EXPOSED")]
+    pub metrics_exposed: bool,
+    /// Collector of OpenTelemetry that spans of calls are sent to (OTLP over gRPC) [default: none]
+    #[arg(long, value_name = "http://HOST:PORT", env = "CLEARANCE_TRACES_ENDPOINT")]
+    pub traces_endpoint: Option<String>,
+    /// Of calls that come without a trace, this share begins one.
+    #[arg(long, value_name = "0..1", env = "CLEARANCE_TRACES_SAMPLE_RATIO",
+        help = format!("Of calls that come without a trace, this share begins one [default: {}]", defaults::TRACES_SAMPLE_RATIO))]
+    pub traces_sample_ratio: Option<f64>,
+    /// Read the configuration, say what is wrong with it, and end. Files that it names are not read.
+    #[arg(long)]
+    pub check: bool,
     /// A cap of the service by its name in docs/operations.md; may be given several times.
     #[arg(long, value_name = "NAME=N", env = "CLEARANCE_LIMITS", value_delimiter = ',', value_parser = limit)]
     pub limit: Vec<(String, i64)>,
@@ -72,11 +98,15 @@ fn limit(text: &str) -> Result<(String, i64), String> {
 /// Serves until SIGTERM or SIGINT.
 pub fn run(serve: &Serve, output: &mut dyn Write) -> Exit {
     match configured(serve) {
+        Ok(_) if serve.check => Exit::Success,
         Ok(config) => started(&config, output),
         Err(error) => {
             let exit = match error {
                 ConfigError::Unreadable { .. } | ConfigError::BadFile { .. } => Exit::Input,
-                ConfigError::BadLimit { .. } | ConfigError::BadDoor { .. } => Exit::Usage,
+                ConfigError::BadLimit { .. }
+                | ConfigError::BadDoor { .. }
+                | ConfigError::BadValue { .. }
+                | ConfigError::NotBuiltIn { .. } => Exit::Usage,
             };
             failed(exit, &error)
         }
@@ -88,6 +118,8 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
         threads: serve.threads,
         drain_seconds: serve.drain_seconds,
         log: serve.log.clone(),
+        log_format: serve.log_format,
+        slow_query_seconds: serve.slow_query_seconds,
         grpc: GrpcSettings {
             address: serve.grpc_address.clone(),
             insecure: serve.insecure.then_some(true),
@@ -104,6 +136,12 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
             root: serve.shared_memory_root.clone(),
             spin_microseconds: None,
         },
+        metrics: MetricsSettings {
+            address: serve.metrics_address.clone(),
+            exposed: serve.metrics_exposed.then_some(true),
+            scenes: None,
+        },
+        traces: TracesSettings { endpoint: serve.traces_endpoint.clone(), sample_ratio: serve.traces_sample_ratio },
         limits: serve.limit.iter().map(|(name, number)| (name.clone(), (*number).into())).collect(),
     };
     let file = serve.config.as_deref().map(Settings::read).transpose()?;
@@ -111,14 +149,18 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
 }
 
 fn started(config: &Config, output: &mut dyn Write) -> Exit {
-    if let Err(error) = log_to_stderr(&config.log) {
-        return failed(Exit::Usage, &error);
-    }
     let runtime = match tokio::runtime::Builder::new_multi_thread().enable_all().build() {
         Ok(runtime) => runtime,
         Err(error) => return failed(Exit::Failure, &error),
     };
+    let logging = match runtime.block_on(async { Logging::begin(config) }) {
+        Ok(logging) => logging,
+        Err(error @ BadLogging::Filter { .. }) => return failed(Exit::Usage, &error),
+        #[cfg(feature = "traces")]
+        Err(error @ BadLogging::Traces(_)) => return failed(Exit::Usage, &error),
+    };
     let exit = runtime.block_on(served(config, output));
+    logging.finish();
     // Work that is still under way after the drain must not hold up the end of the process.
     runtime.shutdown_background();
     exit
@@ -137,6 +179,10 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
                 StartError::Grpc(error) => exit_of_grpc(error),
                 #[cfg(feature = "shared-memory")]
                 StartError::SharedMemory(error) => exit_of_shared_memory(error),
+                #[cfg(feature = "metrics")]
+                StartError::Metrics(EndpointError::NotLoopback { .. }) => Exit::Usage,
+                #[cfg(feature = "metrics")]
+                StartError::Metrics(EndpointError::Address { .. }) => Exit::Failure,
                 StartError::Threads(_) => Exit::Failure,
             };
             return failed(exit, &error);
@@ -145,6 +191,11 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
     if let Err(error) = announce(&daemon, output) {
         return failed(Exit::Failure, &error);
     }
+    tell_service_manager(ServiceState::Ready);
+    let stop = async {
+        stop.await;
+        tell_service_manager(ServiceState::Stopping);
+    };
     match daemon.run(stop).await {
         Ok(Drained::Clean) => Exit::Success,
         Ok(Drained::Late) => failed(Exit::Failure, &"requests were still under way when the time to drain was over"),
@@ -173,10 +224,13 @@ fn exit_of_shared_memory(error: &shared_memory::BindError) -> Exit {
     }
 }
 
-/// One line for each door, so that whoever started the daemon knows where to ask.
+/// One line for each door, and for the metrics, so that whoever started the daemon knows where to ask.
 fn announce(daemon: &Daemon, output: &mut dyn Write) -> io::Result<()> {
     for door in daemon.doors() {
         writeln!(output, "listening {} {}", door.kind, door.address)?;
+    }
+    if let Some(address) = daemon.metrics_address() {
+        writeln!(output, "listening metrics {address}")?;
     }
     output.flush()
 }

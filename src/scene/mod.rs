@@ -44,4 +44,4 @@ pub use scene::{Applied, Scene};
 pub use snapshot::Snapshot;
 pub use validate::SnapshotDefect;
 
-pub use crate::broad_phase::{BroadPhaseHealth, BroadPhaseKind};
+pub use crate::broad_phase::{BroadPhaseHealth, BroadPhaseKind, Health as TreeHealth};

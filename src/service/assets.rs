@@ -103,6 +103,12 @@ impl Assets {
         self.shelf().files.contains_key(&hash)
     }
 
+    /// Bytes of all files, and of the uploads under way.
+    #[must_use]
+    pub fn total_bytes(&self) -> usize {
+        self.shelf().spoken_for
+    }
+
     /// A file's bytes.
     ///
     /// # Errors

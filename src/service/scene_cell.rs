@@ -4,17 +4,19 @@
 //! never theirs to wait for.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use tokio::sync::{Mutex, watch};
 use tokio::time::timeout_at;
 
 use super::admission::{Admission, Permit};
+use super::call_notes::CallNotes;
 use super::deadline::{Deadline, Stop};
 use super::published::Published;
 use super::remembered_keys::{IdempotencyKey, RememberedKeys};
 use super::revision_rule::{Found, RevisionRule, Rule};
 use super::scene_health::SceneHealth;
-use super::scenes::SceneSummary;
+use super::scenes::{SceneFigures, SceneSummary};
 use super::{ServiceError, workers};
 use crate::limits::Limits;
 use crate::scene::{Applied, Edit, Epoch, Revision, Scene, SceneOptions, Snapshot};
@@ -84,6 +86,14 @@ impl SceneCell {
         SceneHealth::of(self.name.clone(), &self.published.all(), against_rebuilt)
     }
 
+    pub fn figures(&self) -> SceneFigures {
+        SceneFigures {
+            summary: self.summary(),
+            kept_revisions: self.published.all().iter().count(),
+            waiting_changes: self.queue.under_way(),
+        }
+    }
+
     pub fn epoch(&self) -> Epoch {
         self.epoch
     }
@@ -150,8 +160,12 @@ impl SceneCell {
     /// Makes a change, after those that came before.
     pub async fn apply(self: &Arc<Self>, change: Change, stop: Stop, turn: Permit) -> Result<Applied, ServiceError> {
         self.check_epoch(change.expected_epoch)?;
-        let writer = timeout_at(stop.deadline().at().into(), Arc::clone(&self.writer).lock_owned());
-        let mut writer = writer.await.map_err(|_| ServiceError::DeadlineExceeded)?;
+        let call = CallNotes::current().map(|notes| (notes, Instant::now()));
+        let writer = timeout_at(stop.deadline().at().into(), Arc::clone(&self.writer).lock_owned()).await;
+        if let Some((notes, queued)) = call {
+            notes.note_waited(queued.elapsed());
+        }
+        let mut writer = writer.map_err(|_| ServiceError::DeadlineExceeded)?;
         let cell = Arc::clone(self);
         workers::prepare(move || {
             let _turn = turn;
@@ -227,7 +241,7 @@ impl Writer {
 mod tests {
     use std::pin::pin;
     use std::task::{Context, Poll, Waker};
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
 
     use super::*;
     use crate::geometry::{Pose, Shape, Vec3};

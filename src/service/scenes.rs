@@ -29,6 +29,17 @@ pub struct SceneSummary {
     pub broad_phase: BroadPhaseKind,
 }
 
+/// What can be told of a scene without looking at all of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFigures {
+    /// In short.
+    pub summary: SceneSummary,
+    /// Revisions that can be asked.
+    pub kept_revisions: usize,
+    /// Changes that wait for their turn or are being made.
+    pub waiting_changes: usize,
+}
+
 /// The scenes of the daemon.
 #[derive(Debug)]
 pub(super) struct Scenes {
@@ -81,6 +92,16 @@ impl Scenes {
         self.by_name.store(Arc::new(by_name));
         cell.delete();
         Ok(cell.summary())
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.by_name.load().len()
+    }
+
+    /// Of the first `most` in the order of their names.
+    pub fn figures(&self, most: usize) -> Vec<SceneFigures> {
+        self.by_name.load().values().take(most).map(|cell| cell.figures()).collect()
     }
 
     /// In the order of their names.

@@ -1,6 +1,8 @@
 //! What do the doors call? One [`Service`] for all of them: it admits, finds the snapshot, keeps the time, and hands
 //! the work to threads. It knows neither messages nor sockets.
 
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -9,17 +11,21 @@ use tokio::sync::watch;
 use super::ServiceError;
 use super::admission::{Admission, Permit};
 use super::assets::{ContentHash, Stored, Upload};
+use super::call::{Call, Observers};
+use super::call_notes::{Asker, CallNotes, Rpc};
 use super::contact_watch::ContactWatch;
 use super::deadline::{Deadline, Patience, Stop, Waiting};
 use super::library::{Library, UnusableMesh};
 use super::mesh_cards::{MeshCardRequest, TimedMeshCard};
+use super::observer::Observer;
 use super::pose_feed::PoseFeed;
-use super::revision_rule::RevisionRule;
+use super::revision_rule::{Found, RevisionRule};
 use super::robots::{LoadedRobot, RobotDescription, Robots};
 use super::scene_cell::Change;
 use super::scene_health::SceneHealth;
 use super::scene_watch::SceneWatch;
-use super::scenes::{SceneSummary, Scenes};
+use super::scenes::{SceneFigures, SceneSummary, Scenes};
+use super::traffic::Traffic;
 use super::view::View;
 use super::workers::{Workers, caught, prepare};
 use crate::limits::Limits;
@@ -76,6 +82,9 @@ pub struct Service {
     loads: Admission,
     doors: Mutex<Vec<Door>>,
     draining: watch::Sender<bool>,
+    observers: Observers,
+    calls: AtomicU64,
+    traffic: Mutex<BTreeMap<&'static str, Arc<Traffic>>>,
 }
 
 impl Service {
@@ -84,6 +93,17 @@ impl Service {
     /// # Errors
     /// The system gives no threads.
     pub fn new(config: &Config) -> Result<Arc<Self>, rayon::ThreadPoolBuildError> {
+        Self::observed(config, Vec::new())
+    }
+
+    /// The same, with those who are told of its calls.
+    ///
+    /// # Errors
+    /// As [`Service::new`].
+    pub fn observed(
+        config: &Config,
+        observers: Vec<Box<dyn Observer>>,
+    ) -> Result<Arc<Self>, rayon::ThreadPoolBuildError> {
         let limits = &config.limits;
         let loads = Admission::new("max_uploads_in_flight", limits.max_uploads_in_flight);
         Ok(Arc::new(Self {
@@ -98,6 +118,9 @@ impl Service {
             loads,
             doors: Mutex::default(),
             draining: watch::Sender::new(false),
+            observers: observers.into(),
+            calls: AtomicU64::new(0),
+            traffic: Mutex::default(),
         }))
     }
 
@@ -131,6 +154,18 @@ impl Service {
         self.queries.under_way()
     }
 
+    /// Pieces of work that wait for a thread which answers questions.
+    #[must_use]
+    pub fn waiting_for_threads(&self) -> usize {
+        self.workers.waiting()
+    }
+
+    /// Uploads and robot loadings under way.
+    #[must_use]
+    pub fn uploads_in_flight(&self) -> usize {
+        self.loads.under_way()
+    }
+
     /// The open doors.
     #[must_use]
     pub fn doors(&self) -> Vec<Door> {
@@ -140,6 +175,36 @@ impl Service {
     /// A door is open from now on.
     pub fn add_door(&self, door: Door) {
         self.doors.lock().unwrap_or_else(PoisonError::into_inner).push(door);
+    }
+
+    /// A call has arrived at a door. What the door does of it within [`Call::answer`] or [`Call::work`] is noted; `asker` is
+    /// asked for only where somebody observes.
+    #[must_use]
+    pub fn begin_call(&self, rpc: Rpc, asker: impl FnOnce() -> Asker) -> Call {
+        if self.observers.is_empty() {
+            return Call::unobserved();
+        }
+        let number = self.calls.fetch_add(1, Ordering::Relaxed) + 1;
+        Call::begin(number, rpc, asker(), &self.observers)
+    }
+
+    /// Who asks in the call that this task works for; none where nobody observes.
+    #[must_use]
+    pub fn current_asker() -> Option<Asker> {
+        CallNotes::current().map(|notes| notes.asker().clone())
+    }
+
+    /// The counts of a door, by its kind.
+    #[must_use]
+    pub fn traffic(&self, door: &'static str) -> Arc<Traffic> {
+        Arc::clone(self.traffic.lock().unwrap_or_else(PoisonError::into_inner).entry(door).or_default())
+    }
+
+    /// The counts of all doors, in the order of their kinds.
+    #[must_use]
+    pub fn all_traffic(&self) -> Vec<(&'static str, Arc<Traffic>)> {
+        let traffic = self.traffic.lock().unwrap_or_else(PoisonError::into_inner);
+        traffic.iter().map(|(door, counts)| (*door, Arc::clone(counts))).collect()
     }
 
     /// Callers that watch scenes or contacts.
@@ -159,7 +224,9 @@ impl Service {
     /// The name cannot be or is taken, or there are too many scenes.
     pub fn create_scene(&self, name: &str, options: &SceneOptions) -> Result<SceneSummary, ServiceError> {
         self.check_open()?;
-        self.scenes.create(name, options)
+        let created = self.scenes.create(name, options)?;
+        note(|notes| notes.note_scene(name));
+        Ok(created)
     }
 
     /// All scenes, in the order of their names.
@@ -174,7 +241,9 @@ impl Service {
     /// It is not there.
     pub fn delete_scene(&self, name: &str) -> Result<SceneSummary, ServiceError> {
         self.check_open()?;
-        self.scenes.delete(name)
+        let deleted = self.scenes.delete(name)?;
+        note(|notes| notes.note_scene(name));
+        Ok(deleted)
     }
 
     /// How a scene is. Worked out on the threads that answer questions: it looks at all of the scene.
@@ -185,12 +254,38 @@ impl Service {
         self.check_open()?;
         let permit = self.queries.enter()?;
         let cell = self.scenes.get(scene)?;
+        note(|notes| notes.note_scene(scene));
         self.workers
             .answer(move || {
                 let _permit = permit;
                 Ok(cell.health(against_rebuilt))
             })
             .await
+    }
+
+    /// How many scenes there are.
+    #[must_use]
+    pub fn scene_count(&self) -> usize {
+        self.scenes.count()
+    }
+
+    /// Figures of the first `most` scenes in the order of their names, for whoever watches the daemon. Takes microseconds.
+    #[must_use]
+    pub fn scene_figures(&self, most: usize) -> Vec<SceneFigures> {
+        self.scenes.figures(most)
+    }
+
+    /// What [`Service::scene_health`] tells, worked out on the calling thread: milliseconds for a hundred thousand bodies. `None`:
+    /// the scene is gone.
+    #[must_use]
+    pub fn scene_health_here(&self, scene: &str) -> Option<SceneHealth> {
+        self.scenes.get(scene).ok().map(|cell| cell.health(false))
+    }
+
+    /// Whether new requests are refused.
+    #[must_use]
+    pub fn is_draining(&self) -> bool {
+        *self.draining.borrow()
     }
 
     /// Changes a scene, after the changes that came before. `change` is worked out on a thread of its own first; it may
@@ -207,10 +302,13 @@ impl Service {
         self.check_open()?;
         let deadline = self.deadline(patience)?;
         let cell = self.scenes.get(scene)?;
+        note(|notes| notes.note_scene(scene));
         let turn = cell.queue()?;
         let (stop, _waiting) = Stop::at(deadline);
         let change = prepare(change).await?;
+        note(|notes| notes.note_edits(change.edits.len()));
         let applied = cell.apply(change, stop, turn).await?;
+        note(|notes| notes.note_revision(applied.revision));
         Ok(Changed { epoch: cell.epoch(), applied })
     }
 
@@ -283,7 +381,10 @@ impl Service {
         self.check_open()?;
         let permit = self.queries.enter()?;
         let deadline = self.deadline(patience)?;
-        let found = self.scenes.get(&target.scene)?.find(target.revision, deadline).await?;
+        let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
+        let found = cell.find(target.revision, deadline).await?;
+        note(|notes| notes.note_revision(found.snapshot.revision()));
         let (stop, _waiting) = Stop::at(deadline);
         let view = View::new(found, stop.clone(), &self.limits);
         self.workers
@@ -309,10 +410,28 @@ impl Service {
         self.check_open()?;
         let _permit = self.queries.enter()?;
         let deadline = self.deadline(patience)?;
-        let found = self.scenes.get(&target.scene)?.find(target.revision, deadline).await?;
+        let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
+        let found = cell.find(target.revision, deadline).await?;
+        self.answer_here(found, deadline, question)
+    }
+
+    /// Answers a question on the calling thread, which waits for no other.
+    fn answer_here<T>(
+        &self,
+        found: Found,
+        deadline: Deadline,
+        question: impl FnOnce(&View) -> Result<T, ServiceError>,
+    ) -> Result<T, ServiceError> {
+        let notes = CallNotes::current();
+        let revision = found.snapshot.revision();
         let (stop, _waiting) = Stop::at(deadline);
         let view = View::on_one_thread(found, stop, &self.limits);
-        caught(|| question(&view))
+        let answer = || caught(|| question(&view));
+        let Some(notes) = notes else { return answer() };
+        notes.note_revision(revision);
+        notes.note_waited(Duration::ZERO);
+        notes.work(answer)
     }
 
     /// The same without waiting: `None` where the revision is still to come.
@@ -332,9 +451,8 @@ impl Service {
             Ok(found) => found?,
             Err(error) => return Some(Err(error)),
         };
-        let (stop, _waiting) = Stop::at(deadline);
-        let view = View::on_one_thread(found, stop, &self.limits);
-        Some(caught(|| question(&view)))
+        note(|notes| notes.note_scene(&target.scene));
+        Some(self.answer_here(found, deadline, question))
     }
 
     /// Asks a scene on the threads that answer questions; `then` gets the answer there, which spares a caller that is no
@@ -343,7 +461,7 @@ impl Service {
     ///
     /// # Errors
     /// A scene or revision that is not there, or a cap: `then` is not called.
-    pub fn ask_then<T>(
+    pub fn ask_then<T: 'static>(
         &self,
         target: &Target,
         patience: Patience,
@@ -353,7 +471,10 @@ impl Service {
         self.check_open()?;
         let permit = self.queries.enter()?;
         let deadline = self.deadline(patience)?;
-        let Some(found) = self.scenes.get(&target.scene)?.find_now(target.revision)? else { return Ok(None) };
+        let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
+        let Some(found) = cell.find_now(target.revision)? else { return Ok(None) };
+        note(|notes| notes.note_revision(found.snapshot.revision()));
         let (stop, waiting) = Stop::at(deadline);
         let view = View::new(found, stop.clone(), &self.limits);
         let work = move || {
@@ -377,6 +498,7 @@ impl Service {
         self.check_open()?;
         let permit = self.watchers.enter()?;
         let cell = self.scenes.get(&target.scene)?;
+        note(|notes| notes.note_scene(&target.scene));
         let first = cell.find(target.revision, self.deadline(patience)?).await?.snapshot;
         let question = question(&first, &self.limits)?;
         Ok(ContactWatch::new(Arc::clone(self), cell, (question, first), patience, permit))
@@ -396,6 +518,7 @@ impl Service {
         self.check_open()?;
         let permit = self.watchers.enter()?;
         let cell = self.scenes.get(scene)?;
+        note(|notes| notes.note_scene(scene));
         cell.check_epoch(epoch)?;
         Ok(SceneWatch::new(Arc::clone(self), cell, from, patience, permit))
     }
@@ -414,6 +537,7 @@ impl Service {
         self.check_open()?;
         let permit = self.streams.enter()?;
         let cell = self.scenes.get(scene)?;
+        note(|notes| notes.note_scene(scene));
         cell.check_epoch(epoch)?;
         Ok(PoseFeed::new(Arc::clone(self), cell, interval, patience, permit))
     }
@@ -443,11 +567,18 @@ impl Service {
     }
 
     fn check_open(&self) -> Result<(), ServiceError> {
-        if *self.draining.borrow() { Err(ServiceError::ShuttingDown) } else { Ok(()) }
+        if self.is_draining() { Err(ServiceError::ShuttingDown) } else { Ok(()) }
     }
 
     fn deadline(&self, patience: Patience) -> Result<Deadline, ServiceError> {
         let longest = Duration::from_secs(self.limits.max_deadline_seconds as u64);
         Deadline::new(Instant::now(), patience, longest)
+    }
+}
+
+/// Says something of the call that this task works for, if it is observed.
+fn note(say: impl FnOnce(&CallNotes)) {
+    if let Some(notes) = CallNotes::current() {
+        say(&notes);
     }
 }

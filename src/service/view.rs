@@ -8,6 +8,8 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::ServiceError;
+use super::answered::{Answered, CountedItem, Question};
+use super::call_notes::CallNotes;
 use super::deadline::Stop;
 use super::revision_rule::Found;
 use crate::limits::{LimitExceeded, Limits};
@@ -28,6 +30,8 @@ pub struct View {
     limits: Limits,
     /// Parts may be given to the threads that answer questions.
     many_threads: bool,
+    /// Of the call that asks, if it is observed.
+    notes: Option<Arc<CallNotes>>,
 }
 
 /// Items that one thread takes at a time, at least: fewer cost more in handing over than they gain.
@@ -38,7 +42,7 @@ const PARTS_PER_THREAD: usize = 4;
 impl View {
     pub(super) fn new(found: Found, stop: Stop, limits: &Limits) -> Self {
         let worlds = Worlds::as_is(&found.snapshot);
-        Self { found, worlds, stop, limits: limits.clone(), many_threads: true }
+        Self { found, worlds, stop, limits: limits.clone(), many_threads: true, notes: CallNotes::current() }
     }
 
     /// A view for a thread that is none of those that answer questions, and answers all by itself.
@@ -88,6 +92,7 @@ impl View {
             stop: self.stop.clone(),
             limits: self.limits.clone(),
             many_threads: self.many_threads,
+            notes: self.notes.clone(),
         })
     }
 
@@ -113,7 +118,7 @@ impl View {
     /// A cap, a question that cannot be asked, or a deadline that came before any answer.
     pub fn check_states(&self, question: &CheckStates) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
-        self.answer(&Prepared::check_states(&self.worlds, question)?, &question.context)
+        self.answer("states", &Prepared::check_states(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
@@ -121,71 +126,80 @@ impl View {
     pub fn check_motions(&self, question: &CheckMotions) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_joint_values", question.positions.len(), self.limits.max_joint_values)?;
         LimitExceeded::check("max_motion_states", question.max_states, self.limits.max_motion_states)?;
-        self.answer(&Prepared::check_motions(&self.worlds, question)?, &question.context)
+        self.answer("motions", &Prepared::check_motions(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn clearance(&self, question: &Clearance) -> Result<Answer, ServiceError> {
-        let context = match &question.subjects {
+        let (of, context) = match &question.subjects {
             ClearanceOf::States(states) => {
                 LimitExceeded::check("max_joint_values", states.positions.len(), self.limits.max_joint_values)?;
-                &states.context
+                ("states", &states.context)
             }
             ClearanceOf::Subjects(pairs) => {
                 LimitExceeded::check("max_items", pairs.items.len(), self.limits.max_items)?;
-                &pairs.context
+                ("subjects", &pairs.context)
             }
         };
-        self.answer(&Prepared::clearance(&self.worlds, question)?, context)
+        self.answer(of, &Prepared::clearance(&self.worlds, question)?, context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::collide(&self.worlds, question)?, &question.context)
+        self.answer("subjects", &Prepared::collide(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
-        self.answer(&Prepared::distance(&self.worlds, question)?, &question.context)
+        self.answer("subjects", &Prepared::distance(&self.worlds, question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn cast_rays(&self, question: &CastRays) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&Rays::new(self.snapshot(), question)?, &question.context)
+        self.answer_each("rays", &Rays::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn cast_shapes(&self, question: &CastShapes) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&Casts::new(self.snapshot(), question)?, &question.context)
+        self.answer_each("shapes", &Casts::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn check_moving_pairs(&self, question: &CheckMovingPairs) -> Result<Answers<CastItem>, ServiceError> {
-        self.answer_each(&MovingPairs::new(self.snapshot(), question)?, &question.context)
+        self.answer_each("moving pairs", &MovingPairs::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn overlap(&self, question: &Overlap) -> Result<Answers<OverlapItem>, ServiceError> {
-        self.answer_each(&Overlaps::new(self.snapshot(), question)?, &question.context)
+        self.answer_each("regions", &Overlaps::new(self.snapshot(), question)?, &question.context)
     }
 
     /// # Errors
     /// As for [`View::check_states`].
     pub fn nearest_bodies(&self, question: &NearestBodies) -> Result<Answers<NearestItem>, ServiceError> {
         LimitExceeded::check("max_pairs", question.count, self.limits.max_pairs)?;
-        self.answer_each(&Neighbours::new(self.snapshot(), question)?, &question.context)
+        self.answer_each("points", &Neighbours::new(self.snapshot(), question)?, &question.context)
     }
 
-    fn answer_each<B: ItemBatch>(&self, batch: &B, context: &Context) -> Result<Answers<B::Item>, ServiceError> {
+    fn answer_each<B: ItemBatch>(
+        &self,
+        of: &'static str,
+        batch: &B,
+        context: &Context,
+    ) -> Result<Answers<B::Item>, ServiceError>
+    where
+        B::Item: CountedItem,
+    {
+        self.note_question(of, batch.len(), context);
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| {
@@ -194,13 +208,15 @@ impl View {
         };
         let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
+        self.note_answered(|| Answered::from(&answers));
         if answers.out_of_time && answers.answered == 0 {
             return Err(ServiceError::DeadlineExceeded);
         }
         Ok(answers)
     }
 
-    fn answer(&self, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
+    fn answer(&self, of: &'static str, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
+        self.note_question(of, question.len(), context);
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
         let run = |part: Range<usize>| {
@@ -209,11 +225,24 @@ impl View {
         };
         let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
+        self.note_answered(|| Answered::from(&answer));
         let nothing = answer.items.iter().all(|item| item.verdict == Verdict::NotRun);
         if answer.out_of_time && nothing {
             return Err(ServiceError::DeadlineExceeded);
         }
         Ok(answer)
+    }
+
+    fn note_question(&self, of: &'static str, items: usize, context: &Context) {
+        if let Some(notes) = &self.notes {
+            notes.note_question(Question::new(of, items, context));
+        }
+    }
+
+    fn note_answered(&self, answered: impl FnOnce() -> Answered) {
+        if let Some(notes) = &self.notes {
+            notes.note_answered(answered());
+        }
     }
 }
 

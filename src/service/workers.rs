@@ -5,17 +5,22 @@
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::Instant;
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use tokio::sync::oneshot;
 
 use super::ServiceError;
+use super::call_notes::CallNotes;
 
 /// Threads that answer questions.
 #[derive(Debug)]
 pub struct Workers {
     pool: ThreadPool,
+    /// Work that waits for a thread.
+    waiting: Arc<AtomicUsize>,
 }
 
 impl Workers {
@@ -26,13 +31,19 @@ impl Workers {
     pub fn new(threads: usize) -> Result<Self, ThreadPoolBuildError> {
         let pool =
             ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("query-{index}")).build()?;
-        Ok(Self { pool })
+        Ok(Self { pool, waiting: Arc::default() })
     }
 
     /// How many threads there are.
     #[must_use]
     pub fn threads(&self) -> usize {
         self.pool.current_num_threads()
+    }
+
+    /// How much work waits for a thread.
+    #[must_use]
+    pub fn waiting(&self) -> usize {
+        self.waiting.load(Ordering::Relaxed)
     }
 
     /// Does `work` on the pool, where it may split itself with rayon.
@@ -45,17 +56,22 @@ impl Workers {
     ) -> Result<T, ServiceError> {
         let (sender, receiver) = oneshot::channel();
         // Whether somebody still waits for the result is not the work's concern.
-        self.pool.spawn(move || drop(sender.send(caught(work))));
+        self.answer_then(work, |result| drop(sender.send(result)));
         receiver.await.unwrap_or_else(|_| Err(incident("a worker ended without a result")))
     }
 
     /// Does `work` on the pool, and there what follows from its result.
-    pub fn answer_then<T>(
+    pub fn answer_then<T: 'static>(
         &self,
         work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
         then: impl FnOnce(Result<T, ServiceError>) + Send + 'static,
     ) {
-        self.pool.spawn(move || then(caught(work)));
+        let (waiting, work) = (Arc::clone(&self.waiting), noted(work));
+        waiting.fetch_add(1, Ordering::Relaxed);
+        self.pool.spawn(move || {
+            waiting.fetch_sub(1, Ordering::Relaxed);
+            then(work());
+        });
     }
 }
 
@@ -66,9 +82,22 @@ impl Workers {
 pub async fn prepare<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
 ) -> Result<T, ServiceError> {
-    match tokio::task::spawn_blocking(move || caught(work)).await {
+    match tokio::task::spawn_blocking(noted(work)).await {
         Ok(result) => result,
         Err(_) => Err(ServiceError::ShuttingDown), // Panics are caught above, so the runtime is going down.
+    }
+}
+
+/// The same work, for another thread: a panic is caught, and if it belongs to a call, that call's notes say how long it waited
+/// and took.
+fn noted<T>(work: impl FnOnce() -> Result<T, ServiceError>) -> impl FnOnce() -> Result<T, ServiceError> {
+    let call = CallNotes::current().map(|notes| (notes, Instant::now()));
+    move || match call {
+        Some((notes, handed_over)) => {
+            notes.note_waited(handed_over.elapsed());
+            notes.work(|| caught(work))
+        }
+        None => caught(work),
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) struct Clients {
 /// One who asks.
 #[derive(Debug)]
 pub(super) struct Client {
-    name: String,
+    name: Arc<str>,
     calls: AtomicUsize,
     max_calls: usize,
     items: Option<Mutex<Bucket>>,
@@ -76,7 +76,7 @@ impl Client {
         let now = Instant::now();
         let bucket = |limit, rate| Bucket::new(limit, rate, now).map(Mutex::new);
         Self {
-            name: name.to_owned(),
+            name: name.into(),
             calls: AtomicUsize::new(0),
             max_calls: limits.max_client_calls,
             items: bucket("max_client_items_per_second", limits.max_client_items_per_second),
@@ -85,7 +85,7 @@ impl Client {
     }
 
     /// As it stands in log lines.
-    pub fn name(&self) -> &str {
+    pub fn name(&self) -> &Arc<str> {
         &self.name
     }
 
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn one_network_of_the_sixth_version_is_one_client() {
         let clients = Clients::new(&Limits::default());
-        let at = |text: &str| clients.at(text.parse().unwrap()).name().to_owned();
+        let at = |text: &str| clients.at(text.parse().unwrap()).name().to_string();
         assert_eq!(at("2001:db8:1:2::5"), at("2001:db8:1:2:ffff::"));
         assert_ne!(at("2001:db8:1:2::5"), at("2001:db8:1:3::5"));
         assert_eq!(at("::ffff:10.0.0.1"), "peer:10.0.0.1");

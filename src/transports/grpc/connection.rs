@@ -19,6 +19,7 @@ use tokio_rustls::server::TlsStream;
 use tonic::transport::server::Connected;
 
 use super::clients::Client;
+use crate::service::Traffic;
 
 /// Bytes after which a connection has begun: the preface of HTTP/2 and the head of its first frame. No call of
 /// gRPC-Web is shorter.
@@ -43,8 +44,28 @@ pub(super) struct Connection {
     /// Comes, or loses its sender, when the connection is to end.
     cut: oneshot::Receiver<()>,
     is_cut: bool,
-    /// Its place among all connections.
-    _place: OwnedSemaphorePermit,
+    _place: Place,
+}
+
+/// The place of a connection among all of a door.
+#[derive(Debug)]
+pub(super) struct Place {
+    traffic: Arc<Traffic>,
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Place {
+    /// A connection is there, until what is returned is dropped.
+    pub fn new(permit: OwnedSemaphorePermit, traffic: Arc<Traffic>) -> Self {
+        traffic.connections_opened.add(1);
+        Self { traffic, _permit: permit }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.traffic.connections_closed.add(1);
+    }
 }
 
 /// What every call of a connection knows of it.
@@ -110,7 +131,7 @@ impl Connection {
     pub fn new(
         socket: Socket,
         client: Arc<Client>,
-        place: OwnedSemaphorePermit,
+        place: Place,
         patience: Duration,
         draining: watch::Receiver<bool>,
     ) -> Self {

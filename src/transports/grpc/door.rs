@@ -32,6 +32,8 @@ use crate::transports::wire::v1::robots_server::RobotsServer;
 use crate::transports::wire::v1::scenes_server::ScenesServer;
 use crate::transports::wire::v1::server_server::ServerServer;
 
+/// What the door is called.
+pub(super) const DOOR: &str = "grpc";
 /// How much one connection may send before it has to wait, bytes: the default of 64 KiB caps long links.
 pub(super) const WINDOW: u32 = 8 << 20;
 /// Calls of one connection at a time.
@@ -155,7 +157,7 @@ impl Listening {
     /// The door as the service lists it.
     #[must_use]
     pub fn door(&self) -> Door {
-        Door { kind: "grpc", address: self.listener.to_string() }
+        Door { kind: DOOR, address: self.listener.to_string() }
     }
 
     /// Serves until `drain` comes, then answers what is under way and closes.
@@ -182,10 +184,9 @@ impl Listening {
 
         let bytes = service.limits().max_message_bytes;
         let clients = Arc::new(Clients::new(service.limits()));
-        let gate = GateLayer::new(Tokens::new(&self.tokens, &clients));
+        let gate = GateLayer::new(Tokens::new(&self.tokens, &clients), Arc::clone(&service));
         let (draining, told_to_drain) = watch::channel(false);
-        let (reception, connections) =
-            Reception::new(self.listener, self.tls, clients, service.limits(), told_to_drain);
+        let (reception, connections) = Reception::new(self.listener, self.tls, clients, &service, told_to_drain);
         tokio::spawn(reception.run());
         let handlers = Handlers { service };
         let scenes = ScenesServer::new(handlers.clone());

@@ -4,21 +4,22 @@
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
-use std::time::Instant;
 
 use http::{HeaderMap, Request, Response, header};
 use tonic::Status;
 use tonic::body::Body;
 use tower::{Layer, Service};
-use tracing::Instrument;
 
 use super::access::{Need, need};
 use super::clients::Client;
 use super::connection::Peer;
+use super::door::DOOR;
 use super::gate_body::{Answered, Asked};
+use super::outcome::outcome_of;
 use super::refusal::{Refusal, name_message_limit};
-use super::seldom::Seldom;
 use super::tokens::Tokens;
+use crate::service::{Asker, Call as ObservedCall, Rpc, Seldom, Service as Daemon, Traffic};
+use crate::transports::requests::rpc_named;
 
 /// Puts a gate in front of all services.
 #[derive(Clone, Debug)]
@@ -38,6 +39,8 @@ pub(super) struct Gate<S> {
 struct Keeper {
     tokens: Tokens,
     strangers: Seldom,
+    service: Arc<Daemon>,
+    traffic: Arc<Traffic>,
 }
 
 /// Who asks; handlers find it among the extensions of a request.
@@ -45,8 +48,9 @@ struct Keeper {
 pub(super) struct Caller(pub Arc<Client>);
 
 impl GateLayer {
-    pub fn new(tokens: Tokens) -> Self {
-        Self { keeper: Arc::new(Keeper { tokens, strangers: Seldom::new() }) }
+    pub fn new(tokens: Tokens, service: Arc<Daemon>) -> Self {
+        let traffic = service.traffic(DOOR);
+        Self { keeper: Arc::new(Keeper { tokens, strangers: Seldom::new(), service, traffic }) }
     }
 }
 
@@ -76,9 +80,17 @@ impl Keeper {
         }
     }
 
+    /// The call as those see it who observe the daemon. Health and reflection are not for them.
+    fn observed(&self, rpc: Option<Rpc>, headers: &HeaderMap, client: &Client) -> ObservedCall {
+        let Some(rpc) = rpc else { return ObservedCall::unobserved() };
+        let traceparent = || headers.get("traceparent")?.to_str().ok().map(Into::into);
+        let asker = || Asker { door: DOOR, client: Arc::clone(client.name()), traceparent: traceparent() };
+        self.service.begin_call(rpc, asker)
+    }
+
     /// Whom the door knows is told for every call; who knocks without a token could fill the log.
     fn log(&self, path: &str, peer: &Peer, refusal: Refusal) {
-        let client = peer.client.name();
+        let client = &**peer.client.name();
         match refusal {
             Refusal::NoToken | Refusal::UnknownToken => {
                 if let Some(times) = self.strangers.due() {
@@ -121,29 +133,49 @@ where
         };
         let on_connection = peer.progress.enter();
         let path = request.uri().path();
+        let rpc = rpc_named(path);
         let client = self.keeper.client(path, request.headers(), &peer);
+        let seen_as = client.as_ref().unwrap_or(&peer.client);
+        let observed = self.keeper.observed(rpc, request.headers(), seen_as);
         let call = client.and_then(|client| client.enter().map_err(Refusal::OverQuota));
         let call = match call {
             Ok(call) => call,
             Err(refusal) => {
                 self.keeper.log(path, &peer, refusal);
-                return refused(refusal.into());
+                let mut response = Status::from(refusal).into_http();
+                numbered(response.headers_mut(), &observed);
+                observed.end(outcome_of(response.headers()));
+                return Box::pin(std::future::ready(Ok(response)));
             }
         };
         let client = Arc::clone(call.client());
-        let span = tracing::info_span!("call", rpc = path, client = client.name());
         request.extensions_mut().insert(Caller(Arc::clone(&client)));
-        let request = request.map(|body| Body::new(Asked::new(body, client)));
-        let begun = Instant::now();
-        let answering = self.inner.call(request);
-        let answered = async move {
+        let traffic = Arc::clone(&self.keeper.traffic);
+        let request = request.map(|body| Body::new(Asked::new(body, client, Arc::clone(&traffic))));
+        let answering = observed.work(self.inner.call(request));
+        Box::pin(async move {
             let mut response = answering.await?;
             name_message_limit(response.headers_mut());
-            let status = response.headers().get(Status::GRPC_STATUS).and_then(|status| status.to_str().ok());
-            tracing::debug!(status = status.unwrap_or("0"), microseconds = begun.elapsed().as_micros(), "answered");
-            Ok(response.map(|body| Body::new(Answered::new(body, call, on_connection))))
-        };
-        Box::pin(answered.instrument(span))
+            let has_ended = response.headers().contains_key(Status::GRPC_STATUS);
+            let until_read = if rpc.is_some_and(|rpc| rpc.streams) && !has_ended {
+                observed
+            } else {
+                numbered(response.headers_mut(), &observed);
+                observed.end(outcome_of(response.headers()));
+                ObservedCall::unobserved()
+            };
+            let answered = |body| Body::new(Answered::new(body, (call, on_connection), until_read, traffic));
+            Ok(response.map(answered))
+        })
+    }
+}
+
+/// A caller that was not answered is told the number of its call, which an operator finds in the log.
+fn numbered(headers: &mut HeaderMap, call: &ObservedCall) {
+    if let Some(number) = call.number()
+        && headers.get(Status::GRPC_STATUS).is_some_and(|status| status != "0")
+    {
+        headers.insert("clearance-call", number.into());
     }
 }
 

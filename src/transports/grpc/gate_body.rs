@@ -13,19 +13,22 @@ use tonic::body::Body;
 
 use super::clients::{Call, Client};
 use super::connection::OnConnection;
+use super::outcome::outcome_of;
 use super::refusal::name_message_limit;
+use crate::service::{Call as ObservedCall, Traffic};
 
 /// What a client sends.
 pub(super) struct Asked {
     inner: Body,
     client: Arc<Client>,
+    traffic: Arc<Traffic>,
     /// The client sent too much before.
     wait: Option<Pin<Box<Sleep>>>,
 }
 
 impl Asked {
-    pub fn new(inner: Body, client: Arc<Client>) -> Self {
-        Self { inner, client, wait: None }
+    pub fn new(inner: Body, client: Arc<Client>, traffic: Arc<Traffic>) -> Self {
+        Self { inner, client, traffic, wait: None }
     }
 }
 
@@ -46,7 +49,9 @@ impl HttpBody for Asked {
         }
         let frame = ready!(Pin::new(&mut self.inner).poll_frame(context));
         if let Some(Ok(frame)) = &frame {
-            self.client.take_bytes(frame.data_ref().map_or(0, Bytes::len));
+            let bytes = frame.data_ref().map_or(0, Bytes::len);
+            self.client.take_bytes(bytes);
+            self.traffic.received_bytes.add(bytes as u64);
         }
         Poll::Ready(frame)
     }
@@ -71,12 +76,20 @@ pub(super) struct Answered {
     /// What is left of a frame that was larger than a piece.
     rest: Bytes,
     call: Call,
+    /// Of a stream: the call as observers see it, which ends with the stream.
+    observed: ObservedCall,
+    traffic: Arc<Traffic>,
     _on_connection: OnConnection,
 }
 
 impl Answered {
-    pub fn new(inner: Body, call: Call, on_connection: OnConnection) -> Self {
-        Self { inner, rest: Bytes::new(), call, _on_connection: on_connection }
+    pub fn new(
+        inner: Body,
+        (call, on_connection): (Call, OnConnection),
+        observed: ObservedCall,
+        traffic: Arc<Traffic>,
+    ) -> Self {
+        Self { inner, rest: Bytes::new(), call, observed, traffic, _on_connection: on_connection }
     }
 }
 
@@ -94,11 +107,13 @@ impl HttpBody for Answered {
                 Ok(data) if data.is_empty() => return Poll::Ready(Some(Ok(Frame::data(data)))),
                 Ok(data) => {
                     self.call.client().take_bytes(data.len());
+                    self.traffic.sent_bytes.add(data.len() as u64);
                     self.rest = data;
                 }
                 Err(mut frame) => {
                     if let Some(trailers) = frame.trailers_mut() {
                         name_message_limit(trailers);
+                        self.observed.end(outcome_of(trailers));
                     }
                     return Poll::Ready(Some(Ok(frame)));
                 }

@@ -15,9 +15,10 @@ use tokio_rustls::TlsAcceptor;
 use super::address::Listener;
 use super::certificate::client_name;
 use super::clients::{Client, Clients};
-use super::connection::{Connection, Socket};
-use super::seldom::Seldom;
+use super::connection::{Connection, Place, Socket};
+use super::door::DOOR;
 use crate::limits::Limits;
+use crate::service::{Seldom, Service, Traffic};
 
 /// When the system has no more file descriptors, closing of others is waited for.
 const OUT_OF_FILES: Duration = Duration::from_millis(50);
@@ -33,6 +34,7 @@ pub(super) struct Reception {
     draining: watch::Receiver<bool>,
     let_in: mpsc::Sender<io::Result<Connection>>,
     turned_away: Seldom,
+    traffic: Arc<Traffic>,
 }
 
 impl Reception {
@@ -41,10 +43,11 @@ impl Reception {
         listener: Listener,
         tls: Option<TlsAcceptor>,
         clients: Arc<Clients>,
-        limits: &Limits,
+        service: &Service,
         draining: watch::Receiver<bool>,
     ) -> (Self, mpsc::Receiver<io::Result<Connection>>) {
         let (let_in, connections) = mpsc::channel(16);
+        let limits: &Limits = service.limits();
         let max_connections = limits.max_connections.min(Semaphore::MAX_PERMITS);
         let reception = Self {
             listener,
@@ -56,6 +59,7 @@ impl Reception {
             draining,
             let_in,
             turned_away: Seldom::new(),
+            traffic: service.traffic(DOOR),
         };
         (reception, connections)
     }
@@ -89,6 +93,7 @@ impl Reception {
                 }
             };
             let Ok(place) = Arc::clone(&self.places).try_acquire_owned() else {
+                self.traffic.connections_refused.add(1);
                 if let Some(times) = self.turned_away.due() {
                     let max_connections = self.max_connections;
                     tracing::warn!(max_connections, times, "connections were closed: there are too many");
@@ -111,16 +116,21 @@ impl Reception {
                         Some(tls) => {
                             let shaken = shake_hands(tls.clone(), socket, self.patience);
                             let (clients, let_in) = (Arc::clone(&self.clients), self.let_in.clone());
+                            let traffic = Arc::clone(&self.traffic);
                             let (patience, draining) = (self.patience, self.draining.clone());
                             handshakes.spawn(async move {
                                 match shaken.await {
                                     Ok((socket, name)) => {
                                         let client = name.map_or(client, |name| clients.named(&name));
+                                        let place = Place::new(place, traffic);
                                         let connection = Connection::new(socket, client, place, patience, draining);
                                         // A door that is gone serves nobody.
                                         let_in.send(Ok(connection)).await.unwrap_or_default();
                                     }
-                                    Err(error) => tracing::debug!(%from, %error, "TLS handshake"),
+                                    Err(error) => {
+                                        traffic.handshakes_failed.add(1);
+                                        tracing::debug!(%from, %error, "TLS handshake");
+                                    }
                                 }
                             });
                         }
@@ -131,6 +141,7 @@ impl Reception {
     }
 
     async fn let_in(&self, socket: Socket, client: Arc<Client>, place: OwnedSemaphorePermit) {
+        let place = Place::new(place, Arc::clone(&self.traffic));
         let connection = Connection::new(socket, client, place, self.patience, self.draining.clone());
         // A door that is gone serves nobody.
         self.let_in.send(Ok(connection)).await.unwrap_or_default();

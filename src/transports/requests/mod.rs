@@ -11,6 +11,7 @@ mod poses;
 mod queries;
 mod query_stream;
 mod robots;
+mod rpc;
 mod scenes;
 mod server;
 mod watch;
@@ -25,6 +26,7 @@ pub use queries::{
 };
 pub use query_stream::{QueryMessages, query_stream};
 pub use robots::{get_robot, list_robots, load_robot};
+pub use rpc::rpc_named;
 pub use scenes::{apply, create_scene, delete_scene, get_scene, get_scene_health, list_scenes};
 pub use server::get_server_info;
 pub use watch::{SceneMessages, watch};

@@ -12,10 +12,10 @@ use tokio_stream::{Stream, StreamExt};
 
 use super::{
     cast_rays, cast_shapes, check_motions, check_moving_pairs, check_path, check_states, clearance, collide, distance,
-    nearest_bodies, overlap,
+    nearest_bodies, overlap, rpc_named,
 };
 use crate::limits::LimitExceeded;
-use crate::service::{Permit, Service, ServiceError};
+use crate::service::{Asker, Call, Permit, Rpc, Service, ServiceError};
 use crate::transports::wire::v1;
 use crate::transports::wire::v1::query_stream_request::Question;
 use crate::transports::wire::v1::query_stream_response::Outcome;
@@ -24,6 +24,8 @@ use crate::transports::wire::v1::query_stream_response::Outcome;
 #[derive(Debug)]
 pub struct QueryMessages<S> {
     service: Arc<Service>,
+    /// Who asks, where somebody observes: each question is a call of its own.
+    asker: Option<Asker>,
     sent: S,
     /// When the caller no longer listens.
     until: Option<Instant>,
@@ -55,6 +57,7 @@ pub fn query_stream<S>(
     Ok(QueryMessages {
         _permit: service.enter_stream()?,
         service: Arc::clone(service),
+        asker: Service::current_asker(),
         sent,
         until: timeout.and_then(|timeout| Instant::now().checked_add(timeout)),
         under_way: JoinSet::new(),
@@ -134,13 +137,35 @@ where
         let (service, refusal, number) = (Arc::clone(&self.service), self.refusal, self.taken);
         let timeout = self.until.map(|until| until.saturating_duration_since(Instant::now()));
         self.taken += 1;
+        let call = match (&self.asker, question.as_ref().and_then(rpc_of)) {
+            (Some(asker), Some(rpc)) => service.begin_call(rpc, || asker.clone()),
+            _ => Call::unobserved(),
+        };
         self.under_way.spawn(async move {
-            let outcome = answer(&service, question, timeout).await;
+            let outcome = call.answer(answer(&service, question, timeout)).await;
             let outcome = outcome.unwrap_or_else(|error| Outcome::Error(refusal(&error)));
             (number, v1::QueryStreamResponse { id, outcome: Some(outcome) })
         });
         Ok(())
     }
+}
+
+/// The rpc that asks the same by itself.
+fn rpc_of(question: &Question) -> Option<Rpc> {
+    rpc_named(match question {
+        Question::Options(_) => return None,
+        Question::CheckStates(_) => "Queries/CheckStates",
+        Question::Collide(_) => "Queries/Collide",
+        Question::Distance(_) => "Queries/Distance",
+        Question::CastRays(_) => "Queries/CastRays",
+        Question::CastShapes(_) => "Queries/CastShapes",
+        Question::CheckMovingPairs(_) => "Queries/CheckMovingPairs",
+        Question::Overlap(_) => "Queries/Overlap",
+        Question::NearestBodies(_) => "Queries/NearestBodies",
+        Question::CheckMotions(_) => "Queries/CheckMotions",
+        Question::CheckPath(_) => "Queries/CheckPath",
+        Question::Clearance(_) => "Queries/Clearance",
+    })
 }
 
 async fn answer(

@@ -13,15 +13,15 @@ use iceoryx2::prelude::CallbackProgression;
 use tokio::runtime::Handle;
 
 use super::answer::{error_message, response_message};
-use super::door::Ports;
+use super::door::{DOOR, Ports};
 use super::endpoint::{Ipc, Line, lines, listener_name, sleep, told};
 use super::layout::RequestHeader;
 use super::questions::answered;
-use super::request::{Called, ClientId, Nonce, Question, Received, Request, decode};
+use super::request::{Called, ClientId, Nonce, PairsOf, Question, Received, Request, decode};
 use super::subjects::Asked;
 use crate::limits::LimitExceeded;
-use crate::query::Subject;
-use crate::service::{Service, ServiceError, View, Waiting};
+use crate::query::{Motions, Subject};
+use crate::service::{Asker, Call, Outcome, Rpc, Service, ServiceError, Traffic, View, Waiting};
 use crate::transports::requests;
 
 /// A request that waits for its answer.
@@ -58,6 +58,7 @@ pub(super) struct Attendant {
 #[derive(Debug)]
 struct Desk {
     service: Arc<Service>,
+    traffic: Arc<Traffic>,
     answered: Arc<Notifier<Ipc>>,
     handed_over: AtomicUsize,
 }
@@ -77,7 +78,8 @@ impl Attendant {
         spin: Duration,
         draining: Arc<AtomicBool>,
     ) -> Self {
-        let desk = Desk { service, answered: Arc::clone(&ports.answered), handed_over: AtomicUsize::new(0) };
+        let (traffic, answered) = (service.traffic(DOOR), Arc::clone(&ports.answered));
+        let desk = Desk { service, traffic, answered, handed_over: AtomicUsize::new(0) };
         Self { ports, desk: Arc::new(desk), runtime, spin, draining, copy: Vec::new(), handed_over: Vec::new() }
     }
 
@@ -141,6 +143,7 @@ impl Attendant {
         // From here on only the copy counts: the client may go on writing to its memory.
         let shared = waiting.payload().as_flattened();
         let size = LimitExceeded::check("max_shared_memory_request_bytes", shared.len(), most);
+        self.desk.traffic.received_bytes.add(shared.len() as u64);
         self.copy.clear();
         self.copy.extend_from_slice(shared.get(..shared.len().min(most)).unwrap_or_default());
         let message = &self.copy;
@@ -150,47 +153,62 @@ impl Attendant {
         let request = match decoded {
             Ok(Received::Asked(request)) => *request,
             Ok(Received::Called(called)) => return self.call(waiting, caller, called),
-            Err(error) => return self.desk.give(&waiting, caller, &error_message(caller.nonce, &error)),
+            Err(error) => {
+                self.desk.begin_call(Some(Rpc::UNREADABLE), caller).end(Outcome::of(&error));
+                return self.desk.give(&waiting, caller, &error_message(caller.nonce, &error));
+            }
         };
+        let call = self.desk.begin_call(rpc_of(&request), caller);
         if is_small(&request) {
             let question = |view: &_| answered(&request, caller.nonce, most_answered, view);
-            if let Some(answer) = self.desk.service.ask_here(&request.target, request.patience, question) {
+            let asked = || self.desk.service.ask_here(&request.target, request.patience, question);
+            if let Some(answer) = call.work_here(asked) {
+                call.end(Outcome::of_result(&answer));
                 return self.desk.give(&waiting, caller, &message_of(caller.nonce, answer));
             }
         }
-        self.hand_over(waiting, caller, request);
+        self.hand_over(waiting, caller, request, Arc::new(call));
     }
 
     /// Has the threads that answer questions send the answer, too: a way back over this thread would cost a wake-up.
-    fn hand_over(&mut self, waiting: Pending, caller: Caller, request: Request) {
+    fn hand_over(&mut self, waiting: Pending, caller: Caller, request: Request, call: Arc<Call>) {
         let (waiting, request) = (Arc::new(Mutex::new(waiting)), Arc::new(request));
         let most = self.desk.service.limits().max_shared_memory_response_bytes;
         let (pending, counted) = (Arc::clone(&waiting), Counted::new(&self.desk));
-        let then = move |answer| counted.0.give(&locked(&pending), caller, &message_of(caller.nonce, answer));
+        let ended = Arc::clone(&call);
+        let then = move |answer| {
+            ended.end(Outcome::of_result(&answer));
+            counted.0.give(&locked(&pending), caller, &message_of(caller.nonce, answer));
+        };
         let asked = Arc::clone(&request);
         let question = move |view: &View| answered(&asked, caller.nonce, most, view);
-        match self.desk.service.ask_then(&request.target, request.patience, question, then) {
+        let service = &self.desk.service;
+        match call.work_here(|| service.ask_then(&request.target, request.patience, question, then)) {
             Ok(Some(work)) => self.handed_over.push((Arc::downgrade(&waiting), work)),
-            Ok(None) => self.wait(waiting, caller, request),
-            Err(error) => self.desk.give(&locked(&waiting), caller, &error_message(caller.nonce, &error)),
+            Ok(None) => self.wait(waiting, caller, request, call),
+            Err(error) => {
+                call.end(Outcome::of(&error));
+                self.desk.give(&locked(&waiting), caller, &error_message(caller.nonce, &error));
+            }
         }
     }
 
     /// Waits for a revision that is still to come.
-    fn wait(&self, waiting: Arc<Mutex<Pending>>, caller: Caller, request: Arc<Request>) {
+    fn wait(&self, waiting: Arc<Mutex<Pending>>, caller: Caller, request: Arc<Request>, call: Arc<Call>) {
         let service = Arc::clone(&self.desk.service);
         self.work(waiting, caller, async move {
             let most = service.limits().max_shared_memory_response_bytes;
             let asked = Arc::clone(&request);
             let question = move |view: &View| answered(&asked, caller.nonce, most, view);
-            service.ask(&request.target, request.patience, question).await
+            call.answer(service.ask(&request.target, request.patience, question)).await
         });
     }
 
     fn call(&self, waiting: Pending, caller: Caller, Called { rpc, message, timeout }: Called) {
         let service = Arc::clone(&self.desk.service);
+        let call = self.desk.begin_call(requests::rpc_named(&rpc), caller);
         self.work(Arc::new(Mutex::new(waiting)), caller, async move {
-            let response = requests::call(&service, &rpc, message, timeout).await?;
+            let response = call.answer(requests::call(&service, &rpc, message, timeout)).await?;
             let message = response_message(caller.nonce, &response);
             let most = service.limits().max_shared_memory_response_bytes;
             LimitExceeded::check("max_shared_memory_response_bytes", message.len(), most)?;
@@ -262,10 +280,30 @@ fn is_small(request: &Request) -> bool {
     quick && request.items <= SMALL
 }
 
+/// The rpc that asks the same through other doors.
+fn rpc_of(request: &Request) -> Option<Rpc> {
+    requests::rpc_named(match &request.question {
+        Question::States(..) => "Queries/CheckStates",
+        Question::Motions(motions, _) if motions.motions == Motions::Path => "Queries/CheckPath",
+        Question::Motions(..) => "Queries/CheckMotions",
+        Question::Pairs { what: PairsOf::Collide, .. } => "Queries/Collide",
+        Question::Pairs { what: PairsOf::Distance, .. } => "Queries/Distance",
+        Question::Rays(_) => "Queries/CastRays",
+    })
+}
+
 impl Desk {
+    /// The call as those see it who observe the daemon.
+    fn begin_call(&self, rpc: Option<Rpc>, caller: Caller) -> Call {
+        let Some(rpc) = rpc else { return Call::unobserved() };
+        let client = || format!("shared-memory:{:032x}", u128::from_be_bytes(caller.client)).into();
+        self.service.begin_call(rpc, || Asker { door: DOOR, client: client(), traceparent: None })
+    }
+
     /// Sends an answer and wakes the one who waits for it. A caller that is gone, or does not fetch its answers, gets
     /// none: it has stopped waiting, or will by its own deadline.
     fn give(&self, waiting: &Pending, caller: Caller, message: &[u8]) {
+        self.traffic.sent_bytes.add(message.len() as u64);
         if let Err(problem) = self.try_give(waiting, message) {
             tracing::warn!("an answer through shared memory was not delivered: {problem}");
         }

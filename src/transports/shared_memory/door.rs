@@ -74,6 +74,8 @@ pub enum BindError {
     },
 }
 
+/// What the door is called.
+pub(super) const DOOR: &str = "shared-memory";
 /// An error has to fit into an answer, and a header into a request.
 const LEAST_BYTES: usize = 64 << 10;
 
@@ -201,7 +203,7 @@ impl Listening {
     /// The door as the service lists it.
     #[must_use]
     pub fn door(&self) -> Door {
-        Door { kind: "shared-memory", address: self.endpoint.name().to_owned() }
+        Door { kind: DOOR, address: self.endpoint.name().to_owned() }
     }
 
     /// Serves until `drain` comes, then answers what is under way and closes.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 /// One kind of log line.
 #[derive(Debug)]
-pub(super) struct Seldom {
+pub struct Seldom {
     since: Instant,
     /// When the next line is due, milliseconds after `since`.
     next: AtomicU64,
@@ -15,7 +15,15 @@ pub(super) struct Seldom {
 
 const PAUSE: Duration = Duration::from_secs(1);
 
+impl Default for Seldom {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Seldom {
+    /// Nothing has happened yet.
+    #[must_use]
     pub fn new() -> Self {
         Self { since: Instant::now(), next: AtomicU64::new(0), happened: AtomicU64::new(0) }
     }
