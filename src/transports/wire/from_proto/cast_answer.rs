@@ -141,10 +141,8 @@ fn cast_item(item: &v1::CastItem) -> Result<CastItem, NotAnAnswer> {
 fn overlap_item(item: &v1::OverlapItem) -> Result<OverlapItem, NotAnAnswer> {
     let verdicts = exactly("verdicts", &item.verdicts, item.bodies.len())?;
     // Why a single body is undecided is not told: the item's reason stands for it, or rounding where a collision decides the item.
-    let why = match item.indeterminacy() {
-        v1::Indeterminacy::Unspecified => v1::Indeterminacy::Rounding.into(),
-        told => told.into(),
-    };
+    let is_told = item.indeterminacy() != v1::Indeterminacy::Unspecified;
+    let why = if is_told { item.indeterminacy } else { v1::Indeterminacy::Rounding.into() };
     let body =
         |(&body, &number): (&u64, &u8)| Ok(Overlapping { body: BodyId(body), verdict: verdict(number.into(), why)? });
     Ok(OverlapItem {
