@@ -3,8 +3,8 @@
 
 use clearance::limits::Limits;
 use clearance::service::ServiceError;
-use clearance::transports::shared_memory::{Received, decode};
 use clearance::transports::shared_memory::layout::{ABI_HASH, MAGIC, RequestHeader, VERSION};
+use clearance::transports::shared_memory::{Received, decode};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,6 +1,8 @@
 //! The commands that answer from the library, run as a user runs them, on data with known truth.
 
 #[cfg(feature = "grpc")]
+mod bench;
+#[cfg(feature = "grpc")]
 mod demo;
 mod hard_cases;
 mod robot_states;

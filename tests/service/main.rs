@@ -5,6 +5,7 @@ mod access;
 mod conformance;
 mod connections;
 mod crowds;
+mod faults;
 mod histories;
 mod process;
 #[cfg(feature = "shared-memory")]

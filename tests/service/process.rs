@@ -12,7 +12,7 @@ use clearance::transports::wire::v1::queries_client::QueriesClient;
 use crate::support::certificates::{Authority, Files, trusting};
 use crate::support::watchdog::{eventually, watched};
 
-fn serve() -> Command {
+pub fn serve() -> Command {
     serve_at("127.0.0.1:0")
 }
 
@@ -26,7 +26,7 @@ fn serve_at(address: &str) -> Command {
 }
 
 /// A process that does not outlive its test.
-struct Killed {
+pub struct Killed {
     child: Child,
     /// What it writes on stderr, read all the while: a full pipe would stop it.
     log: Option<JoinHandle<String>>,
@@ -42,7 +42,7 @@ impl Drop for Killed {
 
 impl Killed {
     /// A daemon, and where it says that it listens.
-    async fn listening(command: &mut Command) -> (Self, String) {
+    pub async fn listening(command: &mut Command) -> (Self, String) {
         let mut child = command.spawn().unwrap();
         let (stdout, mut stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
         let log = std::thread::spawn(move || {
@@ -58,11 +58,19 @@ impl Killed {
     }
 
     /// Told to end: its code, and what it wrote on stderr.
-    async fn stopped(mut self) -> (Option<i32>, String) {
-        let kill = Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap();
-        assert!(kill.success());
+    pub async fn stopped(mut self) -> (Option<i32>, String) {
+        self.signal("-TERM");
         let code = self.ended().await.code();
         (code, self.log.take().unwrap().join().unwrap())
+    }
+
+    pub fn signal(&self, signal: &str) {
+        let kill = Command::new("kill").args([signal, &self.child.id().to_string()]).status().unwrap();
+        assert!(kill.success());
+    }
+
+    pub fn kill(&mut self) {
+        self.child.kill().unwrap();
     }
 
     async fn ended(&mut self) -> ExitStatus {
