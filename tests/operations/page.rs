@@ -35,16 +35,14 @@ fn every_reason_has_its_row_with_code_and_trailers() {
         let status = status_of(&error);
         let of = |key: &str| status.metadata().get(key).unwrap().to_str().unwrap().to_owned();
         let reason = of("clearance-reason");
-        let mut trailers: Vec<String> = status
-            .metadata()
-            .keys()
-            .filter_map(|key| match key {
-                tonic::metadata::KeyRef::Ascii(key) if key.as_str() != "clearance-reason" => {
-                    Some(format!("`{}`", key.as_str()))
-                }
-                _ => None,
-            })
-            .collect();
+        let mut trailers = Vec::new();
+        for key in status.metadata().keys() {
+            if let tonic::metadata::KeyRef::Ascii(key) = key
+                && key.as_str() != "clearance-reason"
+            {
+                trailers.push(format!("`{}`", key.as_str()));
+            }
+        }
         trailers.sort();
         let code = format!("{:?}", status.code());
         let row = format!("| `{reason}` | {} | {} |", screaming(&code), trailers.join(", "));
