@@ -85,7 +85,9 @@ impl Workload {
         };
         let shape = Shape::cuboid(Vec3::new(0.2, 0.2, 0.2)).map_err(Failed::failure)?;
         let pose = Pose::new(Vec3::new(0.6, 0.0, 0.6), Quaternion::IDENTITY).map_err(Failed::failure)?;
-        let states = (0..PROBE_STATES).map(|i| (0..6).map(|joint| ((i * 6 + joint) as f64).sin()).collect());
+        // Positions from -3 to 3 radians that follow no pattern.
+        let position = |number: usize| ((number * 7919) % 6007) as f64 / 1000.0 - 3.0;
+        let states = (0..PROBE_STATES).map(|i| (0..6).map(|joint| position(i * 6 + joint)).collect());
         let block = vec![NewBody::new("block", Arc::new(shape), pose)];
         Self::with(client, "probe", &description, block, states.collect()).await.map_err(Failed::daemon)
     }
