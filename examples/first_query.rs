@@ -23,6 +23,7 @@ use clearance::transports::grpc::{Client, RemoteEdit, RemoteRobot};
 use clearance::transports::wire::v1;
 
 /// Joint positions, radians.
+#[allow(clippy::approx_constant, reason = "as people write them down")]
 const STATES: [[f64; 6]; 3] = [
     [-1.6, -0.6, 0.0, -1.57, -1.57, 3.14],
     [-1.2, -0.6, 0.0, -1.57, -1.57, 3.14],

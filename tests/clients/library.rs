@@ -91,16 +91,17 @@ impl From<tonic::Status> for Refusal {
 }
 
 pub fn refusal(refusal: &Refusal) -> String {
-    let code = match refusal.code {
-        Code::InvalidArgument => "INVALID_ARGUMENT",
-        Code::NotFound => "NOT_FOUND",
-        Code::AlreadyExists => "ALREADY_EXISTS",
-        Code::FailedPrecondition => "FAILED_PRECONDITION",
-        Code::Aborted => "ABORTED",
-        Code::OutOfRange => "OUT_OF_RANGE",
-        Code::ResourceExhausted => "RESOURCE_EXHAUSTED",
-        other => panic!("no record has {other:?}"),
-    };
+    let codes = [
+        (Code::InvalidArgument, "INVALID_ARGUMENT"),
+        (Code::NotFound, "NOT_FOUND"),
+        (Code::AlreadyExists, "ALREADY_EXISTS"),
+        (Code::FailedPrecondition, "FAILED_PRECONDITION"),
+        (Code::Aborted, "ABORTED"),
+        (Code::OutOfRange, "OUT_OF_RANGE"),
+        (Code::ResourceExhausted, "RESOURCE_EXHAUSTED"),
+    ];
+    let known = codes.iter().find(|(code, _)| *code == refusal.code);
+    let (_, code) = known.unwrap_or_else(|| panic!("no record has {:?}", refusal.code));
     let field = if refusal.field.is_empty() { "-" } else { &refusal.field };
     format!("{code} {} {field}", refusal.reason)
 }
@@ -127,8 +128,8 @@ macro_rules! canonical {
     ($($message:ident: |$it:ident| $clear:expr;)*) => {
         $(impl Canonical for v1::$message {
             fn canonical(mut self) -> Self {
-                let $it = &mut self;
-                $clear;
+                let clear = |$it: &mut Self| -> () { $clear };
+                clear(&mut self);
                 self
             }
         })*

@@ -1,5 +1,7 @@
 //! What is asked of every client: each question of the surface, in each of its forms, and some that are refused.
 
+#![allow(clippy::approx_constant, reason = "states as people write them down")]
+
 use std::path::Path;
 
 use clearance::service::ContentHash;
