@@ -148,6 +148,8 @@ impl View {
     /// # Errors
     /// As for [`View::check_states`].
     pub fn collide(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
+        // Before anything is made of the items; a refusal is told with their number, too.
+        self.note_question("subjects", question.items.len(), &question.context);
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
         self.answer("subjects", &Prepared::collide(&self.worlds, question)?, &question.context)
     }
@@ -155,6 +157,8 @@ impl View {
     /// # Errors
     /// As for [`View::check_states`].
     pub fn distance(&self, question: &PairQuery) -> Result<Answer, ServiceError> {
+        // Before anything is made of the items; a refusal is told with their number, too.
+        self.note_question("subjects", question.items.len(), &question.context);
         LimitExceeded::check("max_items", question.items.len(), self.limits.max_items)?;
         self.answer("subjects", &Prepared::distance(&self.worlds, question)?, &question.context)
     }
