@@ -102,14 +102,14 @@ pub struct Glances<'a> {
     read: Cell<Instant>,
 }
 
-/// Questions between two readings of the clock, at most.
-const LONGEST_STRIDE: u32 = 32;
+/// Questions between two readings of the clock, at most: what comes after quick work may be slow.
+const LONGEST_STRIDE: u32 = 4;
 /// With less than this between two readings, the next one may be later.
-const OFTEN: Duration = Duration::from_micros(50);
+const OFTEN: Duration = Duration::from_micros(20);
 
 impl Glances<'_> {
-    /// Whether to stop now. That nobody waits any more is seen at once, the deadline within some tens of microseconds, or
-    /// at the next question where questions take longer.
+    /// Whether to stop now. That nobody waits any more is seen at once, the deadline within some tens of microseconds, or,
+    /// where questions take longer, at one of the next few.
     #[must_use]
     pub fn now(&self) -> bool {
         if self.stop.abandoned.load(Ordering::Relaxed) {
