@@ -1,6 +1,5 @@
 //! When does a question have to stop? The only clock that queries have, and they see it as a "stop now?".
 
-use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -77,59 +76,10 @@ impl Stop {
         self.deadline
     }
 
-    /// For a thread that asks often.
-    #[must_use]
-    pub fn glances(&self) -> Glances<'_> {
-        Glances { stop: self, left: Cell::new(1), stride: Cell::new(1), read: Cell::new(Instant::now()) }
-    }
-
     /// Whether to stop now.
     #[must_use]
     pub fn now(&self) -> bool {
         self.abandoned.load(Ordering::Relaxed) || self.deadline.is_past()
-    }
-}
-
-/// A stop that is asked again and again by one thread. To read the clock costs as much as a small item: it is read the more
-/// seldom the faster the questions come, and every time where they come slowly.
-#[derive(Debug)]
-pub struct Glances<'a> {
-    stop: &'a Stop,
-    /// Questions until the clock is read again, and how many there are between two readings.
-    left: Cell<u32>,
-    stride: Cell<u32>,
-    /// The last reading.
-    read: Cell<Instant>,
-}
-
-/// Questions between two readings of the clock, at most: what comes after quick work may be slow.
-const LONGEST_STRIDE: u32 = 4;
-/// With less than this between two readings, the next one may be later.
-const OFTEN: Duration = Duration::from_micros(20);
-
-impl Glances<'_> {
-    /// Whether to stop now. That nobody waits any more is seen at once, the deadline within some tens of microseconds, or,
-    /// where questions take longer, at one of the next few.
-    #[must_use]
-    pub fn now(&self) -> bool {
-        if self.stop.abandoned.load(Ordering::Relaxed) {
-            return true;
-        }
-        let left = self.left.get();
-        if left > 1 {
-            self.left.set(left - 1);
-            return false;
-        }
-        let now = Instant::now();
-        let stride = if now.duration_since(self.read.get()) < OFTEN {
-            (2 * self.stride.get()).min(LONGEST_STRIDE)
-        } else {
-            (self.stride.get() / 2).max(1)
-        };
-        self.stride.set(stride);
-        self.left.set(stride);
-        self.read.set(now);
-        now >= self.stop.deadline.0
     }
 }
 

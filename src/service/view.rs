@@ -206,10 +206,7 @@ impl View {
         self.note_question(of, batch.len(), context);
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
-        let run = |part: Range<usize>| {
-            let glances = self.stop.glances();
-            batch.run(part, &|| glances.now())
-        };
+        let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
         let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
         self.note_answered(|| Answered::from(&answers));
@@ -223,10 +220,7 @@ impl View {
         self.note_question(of, question.len(), context);
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
         LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
-        let run = |part: Range<usize>| {
-            let glances = self.stop.glances();
-            question.run(part, &|| glances.now())
-        };
+        let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
         let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
         self.note_answered(|| Answered::from(&answer));
