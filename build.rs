@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=build.rs");
     let has = |feature: &str| env::var_os(feature).is_some();
     let grpc = has("CARGO_FEATURE_GRPC");
-    if !grpc && !has("CARGO_FEATURE_SHARED_MEMORY") {
+    if !grpc && !has("CARGO_FEATURE_SHARED_MEMORY") && !has("CARGO_FEATURE_ZENOH") {
         return Ok(());
     }
     let mut files: Vec<PathBuf> =

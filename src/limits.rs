@@ -91,6 +91,8 @@ pub struct Limits {
     pub max_client_items_per_second: usize,
     /// Bytes of messages from and to one client in a second, on the mean; 0: as many as it likes.
     pub max_client_bytes_per_second: usize,
+    /// Steps of a scene that zenoh's subscribers can recover by themselves.
+    pub max_zenoh_cache: usize,
     /// Clients of the shared-memory door.
     pub max_shared_memory_clients: usize,
     /// Size of one request through shared memory, bytes; each client keeps room for three.
@@ -143,6 +145,7 @@ impl Default for Limits {
             max_client_calls: 512,
             max_client_items_per_second: 0,
             max_client_bytes_per_second: 0,
+            max_zenoh_cache: 256,
             max_shared_memory_clients: 8,
             max_shared_memory_request_bytes: 4 << 20,
             max_shared_memory_response_bytes: 3 << 20,
@@ -214,6 +217,7 @@ impl Limits {
             max_client_calls,
             max_client_items_per_second,
             max_client_bytes_per_second,
+            max_zenoh_cache,
             max_shared_memory_clients,
             max_shared_memory_request_bytes,
             max_shared_memory_response_bytes,
@@ -295,6 +299,12 @@ impl Limits {
                 max_client_bytes_per_second,
                 "bytes from and to one client per second; 0: any number",
                 EXHAUSTED_FOR_NOW,
+            ),
+            row(
+                "max_zenoh_cache",
+                max_zenoh_cache,
+                "steps of a scene kept for zenoh's subscribers",
+                "a subscriber that missed more is shown a gap, and asks the scene's log",
             ),
             row(
                 "max_shared_memory_clients",

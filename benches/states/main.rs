@@ -17,7 +17,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clearance::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings};
+use clearance::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings, ZenohSettings};
 use clearance::geometry::Pose;
 use clearance::query::{CheckStates, Context, Mode, Prepared, Verdict, Wants};
 use clearance::robot::{LinkOptions, MeshUse, ModelOptions, mesh_files};
@@ -155,7 +155,8 @@ impl Grpc {
         let client = runtime.block_on(async {
             let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
             let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
-            let config = Settings { threads: Some(1), grpc, shared_memory, ..Settings::default() }
+            let zenoh = ZenohSettings { enabled: Some(false), ..ZenohSettings::default() };
+            let config = Settings { threads: Some(1), grpc, shared_memory, zenoh, ..Settings::default() }
                 .resolve()
                 .expect("defaults hold");
             let daemon = Daemon::build(&config).await.expect("a port is free");

@@ -36,7 +36,7 @@ func startDaemon(t *testing.T, configuration, address string) string {
 	if err := os.WriteFile(file, []byte(configuration), 0o600); err != nil {
 		t.Fatal(err)
 	}
-	daemon := exec.Command(program, "serve", "--config", file, "--grpc-address", address)
+	daemon := exec.Command(program, "serve", "--config", file, "--grpc-address", address, "--no-shared-memory", "--no-zenoh")
 	out, err := daemon.StdoutPipe()
 	if err != nil {
 		t.Fatal(err)

@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use serde::Deserialize;
 
-#[cfg(feature = "shared-memory")]
-use super::SharedMemory;
-use super::{GrpcSettings, LogFormat, MetricsSettings, SharedMemorySettings, TracesSettings};
+#[cfg(any(feature = "shared-memory", feature = "zenoh"))]
+use super::DoorChoice;
+use super::{GrpcSettings, LogFormat, MetricsSettings, SharedMemorySettings, TracesSettings, ZenohSettings};
 use crate::limits::Limits;
 use crate::service;
 
@@ -23,7 +23,10 @@ pub struct Config {
     pub grpc: crate::transports::grpc::Config,
     /// The shared-memory door.
     #[cfg(feature = "shared-memory")]
-    pub shared_memory: SharedMemory,
+    pub shared_memory: DoorChoice<crate::transports::shared_memory::Config>,
+    /// The zenoh door.
+    #[cfg(feature = "zenoh")]
+    pub zenoh: DoorChoice<crate::transports::zenoh::Config>,
     /// How long requests under way may take to finish once the daemon is told to end.
     pub drain: Duration,
     /// Which log lines are written, as a filter of `tracing`.
@@ -44,6 +47,10 @@ pub struct Config {
 pub mod defaults {
     /// Where the gRPC door is.
     pub const GRPC_ADDRESS: &str = "127.0.0.1:50551";
+    /// What the keys of the zenoh door begin with.
+    pub const ZENOH_PREFIX: &str = "clearance";
+    /// Where the zenoh door listens.
+    pub const ZENOH_LISTEN: &str = "tcp/127.0.0.1:50552";
     /// What the shared-memory door is called.
     pub const SHARED_MEMORY_NAME: &str = "clearance";
     /// The folder of the shared-memory door.
@@ -80,6 +87,8 @@ pub struct Settings {
     pub grpc: GrpcSettings,
     /// The shared-memory door.
     pub shared_memory: SharedMemorySettings,
+    /// The zenoh door.
+    pub zenoh: ZenohSettings,
     /// The metrics endpoint.
     pub metrics: MetricsSettings,
     /// Traces.
@@ -168,6 +177,7 @@ impl Settings {
             slow_query_seconds: self.slow_query_seconds.or(weaker.slow_query_seconds),
             grpc: self.grpc.over(weaker.grpc),
             shared_memory: self.shared_memory.over(weaker.shared_memory),
+            zenoh: self.zenoh.over(weaker.zenoh),
             metrics: self.metrics.over(weaker.metrics),
             traces: self.traces.over(weaker.traces),
             limits,
@@ -194,6 +204,8 @@ impl Settings {
             grpc: self.grpc.resolve()?,
             #[cfg(feature = "shared-memory")]
             shared_memory: self.shared_memory.resolve(),
+            #[cfg(feature = "zenoh")]
+            zenoh: self.zenoh.resolve(),
             drain: Duration::from_secs(self.drain_seconds.unwrap_or(defaults::DRAIN_SECONDS)),
             log: self.log.unwrap_or_else(|| defaults::LOG.to_owned()),
             log_format: self.log_format.unwrap_or(defaults::LOG_FORMAT),

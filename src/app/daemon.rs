@@ -8,14 +8,14 @@ use tokio::sync::watch;
 use tokio::task::{JoinError, JoinSet};
 
 use super::Config;
-#[cfg(feature = "shared-memory")]
-use super::SharedMemory;
 use super::observing;
 use crate::service::{Door, Service};
 #[cfg(feature = "grpc")]
 use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
 use crate::transports::shared_memory;
+#[cfg(feature = "zenoh")]
+use crate::transports::zenoh;
 
 /// A daemon whose doors are open and not served yet.
 #[derive(Debug)]
@@ -34,6 +34,8 @@ struct Doors {
     grpc: grpc::Listening,
     #[cfg(feature = "shared-memory")]
     shared_memory: Option<shared_memory::Listening>,
+    #[cfg(feature = "zenoh")]
+    zenoh: Option<zenoh::Listening>,
 }
 
 /// Why a daemon did not begin.
@@ -54,6 +56,10 @@ pub enum StartError {
     #[cfg(feature = "shared-memory")]
     #[error(transparent)]
     SharedMemory(#[from] shared_memory::BindError),
+    /// A door cannot be opened.
+    #[cfg(feature = "zenoh")]
+    #[error(transparent)]
+    Zenoh(#[from] zenoh::BindError),
 }
 
 /// Why a daemon ended by itself.
@@ -165,6 +171,8 @@ impl Doors {
             grpc: config.grpc.bind().await?,
             #[cfg(feature = "shared-memory")]
             shared_memory: shared_memory_door(config).await?,
+            #[cfg(feature = "zenoh")]
+            zenoh: config.zenoh.open("zenoh", async |door| door.bind(&config.service.limits).await).await?,
         })
     }
 
@@ -174,6 +182,8 @@ impl Doors {
             Some(self.grpc.door()),
             #[cfg(feature = "shared-memory")]
             self.shared_memory.as_ref().map(shared_memory::Listening::door),
+            #[cfg(feature = "zenoh")]
+            self.zenoh.as_ref().map(zenoh::Listening::door),
         ];
         doors.into_iter().flatten().collect()
     }
@@ -195,6 +205,11 @@ impl Doors {
             let served = shared_memory.serve(Arc::clone(&service), drained(told_to_drain.clone()));
             serving.spawn(async { served.await.map_err(|error| RunError::of("shared-memory", &error)) });
         }
+        #[cfg(feature = "zenoh")]
+        if let Some(zenoh) = self.zenoh {
+            let served = zenoh.serve(Arc::clone(&service), drained(told_to_drain.clone()));
+            serving.spawn(async { served.await.map_err(|error| RunError::of("zenoh", &error)) });
+        }
         if serving.is_empty() {
             drained(told_to_drain.clone()).await;
         }
@@ -208,24 +223,15 @@ impl Doors {
     }
 }
 
-/// The shared-memory door, if there is to be one. Opening it takes memory, which may take its time.
+/// Opening it takes memory, which may take its time.
 #[cfg(feature = "shared-memory")]
 async fn shared_memory_door(config: &Config) -> Result<Option<shared_memory::Listening>, StartError> {
-    let (door, asked_for) = match &config.shared_memory {
-        SharedMemory::Off => return Ok(None),
-        SharedMemory::IfPossible(door) => (door.clone(), false),
-        SharedMemory::On(door) => (door.clone(), true),
+    let open = async |door: &shared_memory::Config| -> Result<_, StartError> {
+        let (door, limits) = (door.clone(), config.service.limits.clone());
+        let opened = tokio::task::spawn_blocking(move || door.bind(&limits)).await;
+        Ok(opened.map_err(|error| StartError::Threads(error.to_string()))??)
     };
-    let limits = config.service.limits.clone();
-    let opened = tokio::task::spawn_blocking(move || door.bind(&limits)).await;
-    match opened.map_err(|error| StartError::Threads(error.to_string()))? {
-        Ok(door) => Ok(Some(door)),
-        Err(error) if asked_for => Err(error.into()),
-        Err(error) => {
-            tracing::warn!("there is no shared-memory door: {error}");
-            Ok(None)
-        }
-    }
+    config.shared_memory.open("shared-memory", open).await
 }
 
 /// Comes when it is time to drain. A sender that is gone means the same as one that speaks.

@@ -2,6 +2,7 @@
 
 mod config;
 mod daemon;
+mod door_choice;
 mod grpc_settings;
 mod logging;
 mod metrics_settings;
@@ -10,15 +11,16 @@ mod service_manager;
 mod shared_memory_settings;
 mod signals;
 mod traces_settings;
+mod zenoh_settings;
 
 pub use config::{Config, ConfigError, Settings, defaults};
 pub use daemon::{Daemon, Drained, RunError, StartError};
+pub use door_choice::DoorChoice;
 pub use grpc_settings::{GrpcSettings, TlsSettings, TokenSettings, WebSettings};
 pub use logging::{BadLogging, LogFormat, Logging};
 pub use metrics_settings::MetricsSettings;
 pub use service_manager::{ServiceState, tell_service_manager};
-#[cfg(feature = "shared-memory")]
-pub use shared_memory_settings::SharedMemory;
 pub use shared_memory_settings::SharedMemorySettings;
 pub use signals::stop_signal;
 pub use traces_settings::TracesSettings;
+pub use zenoh_settings::ZenohSettings;

@@ -28,62 +28,33 @@ impl SharedMemorySettings {
             spin_microseconds: self.spin_microseconds.or(weaker.spin_microseconds),
         }
     }
-}
 
-#[cfg(feature = "shared-memory")]
-mod resolved {
-    use std::path::PathBuf;
-    use std::time::Duration;
-
-    use super::SharedMemorySettings;
-    use crate::app::defaults;
-    use crate::transports::shared_memory::Config;
-
-    /// Whether there is a shared-memory door.
-    #[derive(Clone, Debug, PartialEq, Eq)]
-    pub enum SharedMemory {
-        /// There is none.
-        Off,
-        /// Nobody asked for it: where it cannot be opened, the daemon says so in its log and serves the other doors.
-        IfPossible(Config),
-        /// It was asked for: a daemon that cannot open it does not start.
-        On(Config),
-    }
-
-    impl SharedMemorySettings {
-        /// The door's configuration, with defaults for what nobody said.
-        pub(in crate::app) fn resolve(self) -> SharedMemory {
-            // Whoever gives it a name wants it.
-            let asked_for = self.enabled.unwrap_or(self.name.is_some());
-            let spin = self.spin_microseconds.unwrap_or(defaults::SHARED_MEMORY_SPIN);
-            let config = Config {
-                name: self.name.unwrap_or_else(|| defaults::SHARED_MEMORY_NAME.to_owned()),
-                root: self.root.unwrap_or_else(|| PathBuf::from(defaults::SHARED_MEMORY_ROOT)),
-                spin: Duration::from_micros(spin),
-            };
-            match self.enabled {
-                Some(false) => SharedMemory::Off,
-                Some(true) | None if asked_for => SharedMemory::On(config),
-                Some(true) | None => SharedMemory::IfPossible(config),
-            }
-        }
+    /// The door's configuration, with defaults for what nobody said.
+    #[cfg(feature = "shared-memory")]
+    pub(super) fn resolve(self) -> super::DoorChoice<crate::transports::shared_memory::Config> {
+        use super::{DoorChoice, defaults};
+        let (is_named, spin) = (self.name.is_some(), self.spin_microseconds.unwrap_or(defaults::SHARED_MEMORY_SPIN));
+        let config = crate::transports::shared_memory::Config {
+            name: self.name.unwrap_or_else(|| defaults::SHARED_MEMORY_NAME.to_owned()),
+            root: self.root.unwrap_or_else(|| PathBuf::from(defaults::SHARED_MEMORY_ROOT)),
+            spin: std::time::Duration::from_micros(spin),
+        };
+        DoorChoice::new(self.enabled, is_named, config)
     }
 }
-
-#[cfg(feature = "shared-memory")]
-pub use resolved::SharedMemory;
 
 #[cfg(all(test, feature = "shared-memory"))]
 mod tests {
+    use super::super::DoorChoice;
     use super::*;
 
     #[test]
     fn shared_memory_that_was_asked_for_is_told_from_what_is_there_by_default() {
         let of = |text| toml::from_str::<SharedMemorySettings>(text).unwrap().resolve();
-        assert!(matches!(of(""), SharedMemory::IfPossible(_)));
-        assert!(matches!(of("root = \"/tmp/x\""), SharedMemory::IfPossible(_)));
-        assert!(matches!(of("enabled = true"), SharedMemory::On(_)));
-        assert!(matches!(of("name = \"mine\""), SharedMemory::On(config) if config.name == "mine"));
-        assert_eq!(of("enabled = false\nname = \"mine\""), SharedMemory::Off);
+        assert!(matches!(of(""), DoorChoice::IfPossible(_)));
+        assert!(matches!(of("root = \"/tmp/x\""), DoorChoice::IfPossible(_)));
+        assert!(matches!(of("enabled = true"), DoorChoice::On(_)));
+        assert!(matches!(of("name = \"mine\""), DoorChoice::On(config) if config.name == "mine"));
+        assert_eq!(of("enabled = false\nname = \"mine\""), DoorChoice::Off);
     }
 }

@@ -12,6 +12,8 @@ mod exit_code;
 #[cfg(feature = "grpc")]
 mod folder;
 mod json_field;
+#[cfg(all(feature = "grpc", feature = "shared-memory"))]
+mod own_name;
 mod pairs;
 mod robot_files;
 #[cfg(feature = "grpc")]

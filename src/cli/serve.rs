@@ -9,7 +9,7 @@ use crate::app::{
 };
 use crate::app::{
     Config, ConfigError, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, StartError, TlsSettings,
-    defaults,
+    ZenohSettings, defaults,
 };
 #[cfg(feature = "metrics")]
 use crate::observability::EndpointError;
@@ -17,6 +17,8 @@ use crate::observability::EndpointError;
 use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
 use crate::transports::shared_memory;
+#[cfg(feature = "zenoh")]
+use crate::transports::zenoh;
 
 /// Flags of `clearance serve`. Each may also stand in the environment, or in the file.
 #[derive(clap::Args, Clone, Debug)]
@@ -39,6 +41,26 @@ pub struct Serve {
     /// No shared-memory door.
     #[arg(long, env = "CLEARANCE_NO_SHARED_MEMORY")]
     pub no_shared_memory: bool,
+    /// Endpoints where zenoh's clients and peers connect; port 0 takes any free one.
+    #[arg(long, value_name = "ENDPOINT", env = "CLEARANCE_ZENOH_LISTEN", value_delimiter = ',',
+        help = format!("Endpoints where zenoh listens, for example tcp/127.0.0.1:0 [default: {}]", defaults::ZENOH_LISTEN))]
+    pub zenoh_listen: Option<Vec<String>>,
+    /// Endpoints of zenoh's routers that the daemon connects to, for example tls/router.example:7447 [default: none]
+    #[arg(long, value_name = "ENDPOINT", env = "CLEARANCE_ZENOH_CONNECT", value_delimiter = ',')]
+    pub zenoh_connect: Option<Vec<String>>,
+    /// What the daemon's keys begin with; daemons of one network need different ones.
+    #[arg(long, value_name = "KEY", env = "CLEARANCE_ZENOH_PREFIX",
+        help = format!("What the daemon's keys in zenoh begin with [default: {}]", defaults::ZENOH_PREFIX))]
+    pub zenoh_prefix: Option<String>,
+    /// zenoh's own configuration (JSON5), for TLS, certificates, passwords, access control [default: none]
+    #[arg(long, value_name = "FILE", env = "CLEARANCE_ZENOH_FILE")]
+    pub zenoh_file: Option<PathBuf>,
+    /// Let zenoh look for others by multicast and gossip.
+    #[arg(long, env = "CLEARANCE_ZENOH_SCOUTING")]
+    pub zenoh_scouting: bool,
+    /// No zenoh door.
+    #[arg(long, env = "CLEARANCE_NO_ZENOH")]
+    pub no_zenoh: bool,
     /// Listen beyond loopback although it is not both encrypted and closed to strangers.
     #[arg(long, env = "CLEARANCE_INSECURE")]
     pub insecure: bool,
@@ -136,6 +158,15 @@ fn configured(serve: &Serve) -> Result<Config, ConfigError> {
             root: serve.shared_memory_root.clone(),
             spin_microseconds: None,
         },
+        zenoh: ZenohSettings {
+            enabled: serve.no_zenoh.then_some(false),
+            prefix: serve.zenoh_prefix.clone(),
+            listen: serve.zenoh_listen.clone(),
+            connect: serve.zenoh_connect.clone(),
+            scouting: serve.zenoh_scouting.then_some(true),
+            file: serve.zenoh_file.clone(),
+            insecure: serve.insecure.then_some(true),
+        },
         metrics: MetricsSettings {
             address: serve.metrics_address.clone(),
             exposed: serve.metrics_exposed.then_some(true),
@@ -179,6 +210,8 @@ async fn served(config: &Config, output: &mut dyn Write) -> Exit {
                 StartError::Grpc(error) => exit_of_grpc(error),
                 #[cfg(feature = "shared-memory")]
                 StartError::SharedMemory(error) => exit_of_shared_memory(error),
+                #[cfg(feature = "zenoh")]
+                StartError::Zenoh(error) => exit_of_zenoh(error),
                 #[cfg(feature = "metrics")]
                 StartError::Metrics(EndpointError::NotLoopback { .. }) => Exit::Usage,
                 #[cfg(feature = "metrics")]
@@ -221,6 +254,19 @@ fn exit_of_shared_memory(error: &shared_memory::BindError) -> Exit {
     match error {
         BindError::Endpoint(_) | BindError::TooSmall { .. } => Exit::Usage,
         BindError::NoSpace(_) | BindError::Taken { .. } | BindError::System { .. } => Exit::Failure,
+    }
+}
+
+/// How the process ends when the door cannot be opened.
+#[cfg(feature = "zenoh")]
+fn exit_of_zenoh(error: &zenoh::BindError) -> Exit {
+    use zenoh::{BadConfig, BindError};
+    match error {
+        BindError::Config(BadConfig::File { .. }) => Exit::Input,
+        BindError::Config(
+            BadConfig::Prefix(_) | BadConfig::NoEndpoint { .. } | BadConfig::Exposed { .. } | BadConfig::Refused { .. },
+        ) => Exit::Usage,
+        BindError::System(_) => Exit::Failure,
     }
 }
 

@@ -50,6 +50,6 @@ pub use scene_health::{KeptRevision, SceneHealth};
 pub use scene_watch::{SceneStep, SceneWatch};
 pub use scenes::{SceneFigures, SceneSummary};
 pub use seldom::Seldom;
-pub use service::{Changed, Config, Door, Service, Target};
+pub use service::{Changed, Config, Door, FEW_ITEMS, Service, Target};
 pub use traffic::{Count, Traffic};
 pub use view::View;

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use arc_swap::ArcSwap;
+use tokio::sync::watch;
 
 use super::ServiceError;
 use super::scene_cell::SceneCell;
@@ -48,6 +49,8 @@ pub(super) struct Scenes {
     /// Held while the map is replaced.
     changing: Mutex<()>,
     next_epoch: AtomicU64,
+    /// Sent to whenever scenes come or go.
+    changed: watch::Sender<()>,
 }
 
 impl Scenes {
@@ -59,6 +62,7 @@ impl Scenes {
             by_name: ArcSwap::default(),
             changing: Mutex::default(),
             next_epoch: AtomicU64::new(u64::try_from(since_1970.as_micros()).unwrap_or(1)),
+            changed: watch::Sender::new(()),
         }
     }
 
@@ -78,6 +82,7 @@ impl Scenes {
         let summary = cell.summary();
         by_name.insert(name.to_owned(), Arc::new(cell));
         self.by_name.store(Arc::new(by_name));
+        self.changed.send_replace(());
         Ok(summary)
     }
 
@@ -91,7 +96,13 @@ impl Scenes {
         let cell = by_name.remove(name).ok_or_else(|| not_found(name))?;
         self.by_name.store(Arc::new(by_name));
         cell.delete();
+        self.changed.send_replace(());
         Ok(cell.summary())
+    }
+
+    /// Changes whenever scenes come or go.
+    pub fn changed(&self) -> watch::Receiver<()> {
+        self.changed.subscribe()
     }
 
     /// How many there are.

@@ -41,6 +41,10 @@ pub struct Config {
     pub limits: Limits,
 }
 
+/// So many plain items are answered by whoever has read them ([`Service::ask_at_once`], [`Service::ask_here`]): to hand them to
+/// another thread and to be woken by it costs tens of microseconds, more than the answer.
+pub const FEW_ITEMS: usize = 8;
+
 /// One way to ask the daemon.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Door {
@@ -261,6 +265,11 @@ impl Service {
                 Ok(cell.health(against_rebuilt))
             })
             .await
+    }
+
+    /// Changes whenever scenes come or go.
+    pub fn scenes_changed(&self) -> watch::Receiver<()> {
+        self.scenes.changed()
     }
 
     /// How many scenes there are.

@@ -94,6 +94,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("opentelemetry-otlp", &["observability"]),
     ("opentelemetry_sdk", &["observability"]),
     ("parry3d-f64", &[GEOMETRY]),
+    ("percent-encoding", &["transports"]),
     ("procfs", &["observability"]),
     ("prometheus-client", &["observability", "app"]),
     ("prost", &["transports"]),
@@ -105,7 +106,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("rustix", &["transports", "cli"]),
     ("sd-notify", &["app"]),
     ("serde", &[GEOMETRY, "limits", "app", "cli"]),
-    ("serde_json", &[GEOMETRY, "app", "cli"]),
+    ("serde_json", &[GEOMETRY, "transports", "app", "cli"]),
     ("sha2", &["service", "transports"]),
     ("subtle", &["transports"]),
     ("thiserror", &["*"]),
@@ -125,6 +126,8 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("tracing-subscriber", &["observability", "app", "cli", "main"]),
     ("wide", &["broad_phase"]),
     ("x509-parser", &["transports"]),
+    ("zenoh", &["transports"]),
+    ("zenoh-ext", &["transports"]),
 ];
 
 /// What is wrong with the imports of `source`, one line each.

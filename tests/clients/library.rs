@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use clearance::service::{Config, ContentHash, Service, ServiceError};
-use clearance::transports::grpc::{query_error, status_of};
+use clearance::transports::grpc::status_of;
 use clearance::transports::requests;
 use clearance::transports::wire::v1;
 use prost::Message;
@@ -66,7 +66,7 @@ impl Library {
     pub async fn query_stream(&self, questions: &[Vec<u8>]) -> Vec<Vec<u8>> {
         let sent: Vec<Result<v1::QueryStreamRequest, Infallible>> =
             questions.iter().map(|question| Ok(decoded(question))).collect();
-        let mut stream = requests::query_stream(&self.service, tokio_stream::iter(sent), None, query_error).unwrap();
+        let mut stream = requests::query_stream(&self.service, tokio_stream::iter(sent), None).unwrap();
         let mut answers = Vec::new();
         while let Some(answer) = stream.next().await.unwrap() {
             answers.push(answer.canonical().encode_to_vec());

@@ -10,7 +10,7 @@ fn every_door_stands_beside_the_work_and_its_floor() {
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let lines = json_lines(&done.stdout);
     let of = |what: &str| lines.iter().filter(|line| line["what"] == what).collect::<Vec<_>>();
-    let doors = 2 + usize::from(cfg!(feature = "shared-memory"));
+    let doors = 2 + usize::from(cfg!(feature = "shared-memory")) + usize::from(cfg!(feature = "zenoh"));
     assert_eq!(of("door").len(), 2 * doors);
     for row in of("door") {
         for time in ["through", "within", "bare"] {
@@ -21,6 +21,6 @@ fn every_door_stands_beside_the_work_and_its_floor() {
         assert!(row["overhead"].is_f64() && row["target"].is_f64() && row["met"].is_boolean(), "{row}");
     }
     assert_eq!(of("sockets").len(), 2);
-    assert_eq!(of("throughput").len(), 3 + usize::from(cfg!(feature = "shared-memory")));
+    assert_eq!(of("throughput").len(), 1 + doors);
     assert!(of("throughput").iter().all(|row| row["per_second"].as_f64().is_some_and(|rate| rate > 0.0)));
 }

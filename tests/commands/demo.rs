@@ -14,7 +14,7 @@ fn the_demo_shows_three_scenes_an_edit_and_what_it_changed() {
         *steps.entry(line["step"].as_str().unwrap()).or_insert(0_usize) += 1;
     }
     // Each of them with one state and with many.
-    let doors = 1 + usize::from(cfg!(feature = "shared-memory"));
+    let doors = 1 + usize::from(cfg!(feature = "shared-memory")) + usize::from(cfg!(feature = "zenoh"));
     let expected = [
         ("daemon", 1),
         ("door", 2 * doors),

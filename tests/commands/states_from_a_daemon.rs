@@ -21,7 +21,7 @@ impl Daemon {
 
     fn start_at(address: &str, more: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_clearance"))
-            .args(["serve", "--grpc-address", address, "--no-shared-memory"])
+            .args(["serve", "--grpc-address", address, "--no-shared-memory", "--no-zenoh"])
             .args(more)
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

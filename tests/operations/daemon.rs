@@ -24,7 +24,7 @@ pub struct Daemon {
 /// `clearance serve` at free ports, without shared memory.
 pub fn serve() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
-    command.args(["serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory"]);
+    command.args(["serve", "--grpc-address", "127.0.0.1:0", "--no-shared-memory", "--no-zenoh"]);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }

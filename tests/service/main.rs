@@ -10,6 +10,8 @@ mod histories;
 mod process;
 #[cfg(feature = "shared-memory")]
 mod shared_memory;
+#[cfg(feature = "shared-memory")]
+mod soak;
 mod streams;
 mod support;
 mod watching;

@@ -17,11 +17,16 @@ pub fn serve() -> Command {
 }
 
 fn serve_at(address: &str) -> Command {
+    serve_with(&["--grpc-address", address, "--no-shared-memory", "--no-zenoh"])
+}
+
+/// With these arguments, and at any free port if they do not say where.
+pub fn serve_with(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
-    command
-        .args(["serve", "--grpc-address", address, "--no-shared-memory"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    command.arg("serve").args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
+    if !arguments.contains(&"--grpc-address") {
+        command.args(["--grpc-address", "127.0.0.1:0"]);
+    }
     command
 }
 
@@ -51,8 +56,14 @@ impl Killed {
             text
         });
         let child = Self { child, log: Some(log) };
-        let line = tokio::task::spawn_blocking(move || BufReader::new(stdout).lines().next().unwrap().unwrap());
-        let line = watched("the first line", line).await.unwrap();
+        let (sender, first) = tokio::sync::oneshot::channel();
+        // It is read to its end: a daemon that cannot say where its other doors are does not begin.
+        std::thread::spawn(move || {
+            let mut lines = BufReader::new(stdout).lines();
+            sender.send(lines.next().unwrap().unwrap()).unwrap();
+            lines.for_each(drop);
+        });
+        let line = watched("the first line", first).await.unwrap();
         let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}")).to_owned();
         (child, address)
     }
@@ -67,6 +78,10 @@ impl Killed {
     pub fn signal(&self, signal: &str) {
         let kill = Command::new("kill").args([signal, &self.child.id().to_string()]).status().unwrap();
         assert!(kill.success());
+    }
+
+    pub fn id(&self) -> u32 {
+        self.child.id()
     }
 
     pub fn kill(&mut self) {

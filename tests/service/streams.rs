@@ -7,7 +7,7 @@ use clearance::limits::Limits;
 use clearance::transports::wire::v1;
 use clearance::transports::wire::v1::query_stream_request::Question;
 
-use crate::support::door::{Door, Grpc, Messages, Streams};
+use crate::support::door::{Door, Grpc, Messages, Streams, Watches};
 use crate::support::messages::*;
 use crate::support::watchdog::{eventually, watched};
 

@@ -12,7 +12,7 @@ use prost::Message;
 use tonic::transport::Channel;
 use tonic::{Code, Request};
 
-use crate::support::door::{Contacts, Door, Grpc, InProcess, Refusal, Streams};
+use crate::support::door::{Contacts, Door, Grpc, InProcess, Refusal, Watches};
 use crate::support::messages::*;
 use crate::support::watchdog::{eventually, watched};
 

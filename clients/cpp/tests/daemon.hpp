@@ -36,7 +36,7 @@ class Daemon {
     posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     const std::string path = file.string();
-    const char* arguments[] = {program.c_str(), "serve", "--config", path.c_str(), "--grpc-address", listen.c_str(), nullptr};
+    const char* arguments[] = {program.c_str(), "serve", "--config", path.c_str(), "--grpc-address", listen.c_str(), "--no-shared-memory", "--no-zenoh", nullptr};
     const int failed = posix_spawn(&process_, program.c_str(), &actions, nullptr, const_cast<char**>(arguments), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(out[1]);
@@ -51,6 +51,8 @@ class Daemon {
       end();
       throw std::runtime_error(program + " said " + line);
     }
+    // The daemon has read what it needs.
+    std::filesystem::remove_all(folder);
     address_ = line.substr(start.size());
   }
 

@@ -26,7 +26,7 @@ export async function folder(t: TestContext): Promise<string> {
 export async function daemon(t: TestContext, configuration = "", address = "127.0.0.1:0"): Promise<string> {
   const file = join(await folder(t), "clearance.toml");
   await writeFile(file, configuration);
-  const started = spawn(PROGRAM, ["serve", "--config", file, "--grpc-address", address], { stdio: ["ignore", "pipe", "ignore"] });
+  const started = spawn(PROGRAM, ["serve", "--config", file, "--grpc-address", address, "--no-shared-memory", "--no-zenoh"], { stdio: ["ignore", "pipe", "ignore"] });
   const watchdog = setTimeout(() => started.kill("SIGKILL"), 120_000);
   t.after(async () => {
     const ended = once(started, "exit");

@@ -7,7 +7,7 @@ use tokio::runtime::Runtime;
 use super::super::exit_code::Failed;
 use super::workload::Batch;
 use crate::query::{Answer, Verdict};
-use crate::service::{Patience, Service, ServiceError, View};
+use crate::service::{FEW_ITEMS, Patience, Service, ServiceError, View};
 
 /// Asks, and keeps the last answer.
 pub(super) trait Asker {
@@ -37,9 +37,6 @@ pub(super) struct InProcess {
     free: Vec<bool>,
 }
 
-/// Batches of no more states than this are answered where they are asked, as the doors do it.
-const FEW: usize = 8;
-
 impl InProcess {
     pub fn new(service: &Arc<Service>) -> Result<Self, Failed> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failed::failure)?;
@@ -47,11 +44,11 @@ impl InProcess {
     }
 }
 
-/// The same work, wherever it is done.
+/// The same work, wherever it is done; small batches where they are asked, as the doors do it.
 pub(super) async fn asked(service: &Service, batch: &Batch) -> Result<Answer, ServiceError> {
     let question = Arc::clone(&batch.question);
     let work = move |view: &View| view.check_states(&question);
-    if batch.items <= FEW {
+    if batch.items <= FEW_ITEMS {
         return service.ask_at_once(&batch.target, Patience::default(), work).await;
     }
     service.ask(&batch.target, Patience::default(), work).await

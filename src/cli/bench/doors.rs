@@ -7,6 +7,8 @@ use std::time::Duration;
 use tokio::runtime::{Handle, Runtime};
 
 use super::super::exit_code::Failed;
+#[cfg(feature = "shared-memory")]
+use super::super::own_name::OwnName;
 use super::asker::{Asker, Last};
 use super::workload::Batch;
 use crate::service::Service;
@@ -23,14 +25,24 @@ pub(super) struct OpenDoor {
     pub floor: Box<dyn Echo>,
 }
 
+/// Where doors that are no ports are found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place<'a> {
+    /// For sockets, and for what both sides of shared memory know of each other.
+    pub folder: &'a Path,
+    /// What the memory is called.
+    #[cfg(feature = "shared-memory")]
+    pub own: &'a OwnName,
+}
+
 /// Every door of this build. `runtime` runs the daemon's side.
 pub(super) fn open(
     service: &Arc<Service>,
     runtime: &Handle,
-    folder: &Path,
+    place: Place<'_>,
     spin: Duration,
 ) -> Result<Vec<OpenDoor>, Failed> {
-    let socket = |name: &str| folder.join(name).display().to_string();
+    let socket = |name: &str| place.folder.join(name).display().to_string();
     let tcp = serve_grpc(service, runtime, "127.0.0.1:0")?;
     let unix = serve_grpc(service, runtime, &format!("unix:{}", socket("clearance.sock")))?;
     let tcp_floor = GrpcEcho::new(runtime, None).map_err(Failed::failure)?;
@@ -39,8 +51,10 @@ pub(super) fn open(
         OpenDoor { name: "gRPC, TCP", asker: Box::new(Unary::new(&tcp)?), floor: Box::new(tcp_floor) },
         OpenDoor { name: "gRPC, Unix socket", asker: Box::new(Unary::new(&unix)?), floor: Box::new(unix_floor) },
     ];
+    #[cfg(feature = "zenoh")]
+    doors.push(zenoh::open(service, runtime)?);
     #[cfg(feature = "shared-memory")]
-    doors.push(shared_memory::open(service, runtime, folder, spin)?);
+    doors.push(shared_memory::open(service, runtime, place, spin)?);
     Ok(doors)
 }
 
@@ -87,6 +101,69 @@ impl Asker for Unary {
     }
 }
 
+#[cfg(feature = "zenoh")]
+pub(super) mod zenoh {
+    //! Through zenoh, over TCP.
+
+    use super::*;
+    use crate::transports::zenoh::{Client, Config, ZenohEcho};
+
+    /// What the keys of the bench begin with.
+    pub const PREFIX: &str = "bench";
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    pub fn open(service: &Arc<Service>, runtime: &Handle) -> Result<OpenDoor, Failed> {
+        let endpoint = serve(service, runtime)?;
+        let floor = Box::new(ZenohEcho::new(service.limits()).map_err(Failed::failure)?);
+        Ok(OpenDoor { name: "zenoh, TCP", asker: Box::new(Queries::new(&endpoint)?), floor })
+    }
+
+    /// Opens the door on a free port.
+    pub fn serve(service: &Arc<Service>, runtime: &Handle) -> Result<String, Failed> {
+        let config = Config::on_loopback(PREFIX);
+        let listening = runtime.block_on(config.bind(service.limits())).map_err(Failed::failure)?;
+        let endpoint = listening.door().address;
+        runtime.spawn(listening.serve(Arc::clone(service), std::future::pending()));
+        Ok(endpoint)
+    }
+
+    /// One query after the other.
+    pub struct Queries {
+        client: Client,
+        runtime: Runtime,
+        sent: usize,
+        answer: BulkVerdicts,
+    }
+
+    impl Queries {
+        pub fn new(endpoint: &str) -> Result<Self, Failed> {
+            // zenoh wants a runtime with threads beside the one that waits.
+            let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build();
+            let runtime = runtime.map_err(Failed::failure)?;
+            let client = runtime.block_on(Client::connect(endpoint, PREFIX)).map_err(Failed::failure)?;
+            Ok(Self { client, runtime, sent: 0, answer: BulkVerdicts::default() })
+        }
+    }
+
+    /// One batch.
+    pub async fn asked(client: &Client, batch: &Batch) -> Result<BulkVerdicts, Failed> {
+        let called = client.call("Queries/CheckStates", batch.message.encoded(), PATIENCE);
+        BulkVerdicts::decode(called.await.map_err(Failed::failure)?).map_err(Failed::daemon)
+    }
+
+    impl Asker for Queries {
+        fn ask(&mut self, batch: &Batch) -> Result<(), Failed> {
+            self.answer = self.runtime.block_on(asked(&self.client, batch))?;
+            self.sent = batch.message.message_bytes();
+            Ok(())
+        }
+
+        fn last(&self) -> Last {
+            Last { free: self.answer.free(), sent: self.sent, came: self.answer.message_bytes() }
+        }
+    }
+}
+
 #[cfg(feature = "shared-memory")]
 pub(super) mod shared_memory {
     //! Through memory that both sides see.
@@ -94,12 +171,17 @@ pub(super) mod shared_memory {
     use super::*;
     use crate::transports::shared_memory::{Ask, Client, Config, Options, Reply, SharedMemoryEcho};
 
-    pub fn open(service: &Arc<Service>, runtime: &Handle, folder: &Path, spin: Duration) -> Result<OpenDoor, Failed> {
-        let name = format!("bench-{}", std::process::id());
-        serve(service, runtime, folder, &name, spin)?;
-        let floor = SharedMemoryEcho::new(&format!("{name}-echo"), folder, service.limits());
+    pub fn open(
+        service: &Arc<Service>,
+        runtime: &Handle,
+        place: Place<'_>,
+        spin: Duration,
+    ) -> Result<OpenDoor, Failed> {
+        let Place { folder, own } = place;
+        serve(service, runtime, folder, own.name(), spin)?;
+        let floor = SharedMemoryEcho::new(&own.of("echo"), folder, service.limits());
         let floor = Box::new(floor.map_err(Failed::failure)?);
-        Ok(OpenDoor { name: "shared memory", asker: Box::new(Columns::new(&name, folder)?), floor })
+        Ok(OpenDoor { name: "shared memory", asker: Box::new(Columns::new(own.name(), folder)?), floor })
     }
 
     /// Opens the door under a name that no other on this machine has.

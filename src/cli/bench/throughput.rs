@@ -9,7 +9,7 @@ use tokio::task::JoinSet;
 
 use super::super::exit_code::Failed;
 use super::asker::asked;
-use super::doors::serve_grpc;
+use super::doors::{Place, serve_grpc};
 use super::workload::{Batch, Workload};
 use crate::service::Service;
 use crate::transports::grpc::BulkClient;
@@ -51,7 +51,7 @@ struct Run {
 pub(super) fn measure(
     service: &Arc<Service>,
     runtime: &Handle,
-    folder: &Path,
+    place: Place<'_>,
     workload: &Workload,
     seconds: f64,
 ) -> Result<Vec<Throughput>, Failed> {
@@ -64,10 +64,19 @@ pub(super) fn measure(
     let mut here = way("within the process", None);
     let mut stream = way("gRPC, stream of batches", Some(0.7));
     let mut unary = way("gRPC, calls", None);
+    #[cfg(feature = "zenoh")]
+    let mut queries = way("zenoh, queries", Some(0.6));
+    #[cfg(feature = "zenoh")]
+    let zenoh_client = {
+        use crate::transports::zenoh::Client;
+        let endpoint = super::doors::zenoh::serve(service, runtime)?;
+        let connected = runtime.block_on(Client::connect(&endpoint, super::doors::zenoh::PREFIX));
+        Arc::new(connected.map_err(Failed::failure)?)
+    };
     #[cfg(feature = "shared-memory")]
     let mut shared = way("shared memory", Some(0.9));
     #[cfg(feature = "shared-memory")]
-    let name = format!("bench-{}-busy", std::process::id());
+    let (name, folder) = (place.own.of("busy"), place.folder);
     #[cfg(feature = "shared-memory")]
     super::doors::shared_memory::serve(service, runtime, folder, &name, Duration::ZERO)?;
     for _ in 0..ROUNDS {
@@ -77,6 +86,8 @@ pub(super) fn measure(
         stream.rounds.push(per_second(&run));
         let run = client.block_on(called(&connection, &batch, time))?;
         unary.rounds.push(per_second(&run));
+        #[cfg(feature = "zenoh")]
+        queries.rounds.push(per_second(&runtime.block_on(queried(&zenoh_client, &batch, time))?));
         #[cfg(feature = "shared-memory")]
         shared.rounds.push(per_second(&through_shared_memory((&name, folder), &batch, time)?));
     }
@@ -84,6 +95,8 @@ pub(super) fn measure(
         here,
         stream,
         unary,
+        #[cfg(feature = "zenoh")]
+        queries,
         #[cfg(feature = "shared-memory")]
         shared,
     ])
@@ -124,6 +137,15 @@ async fn called(client: &BulkClient, batch: &Batch, time: Duration) -> Result<Ru
     kept_busy(time, || {
         let (client, message) = (client.clone(), batch.message.clone());
         async move { client.check_states(&message).await.map(drop).map_err(|error| error.to_string()) }
+    })
+    .await
+}
+
+#[cfg(feature = "zenoh")]
+async fn queried(client: &Arc<crate::transports::zenoh::Client>, batch: &Batch, time: Duration) -> Result<Run, Failed> {
+    kept_busy(time, || {
+        let (client, batch) = (Arc::clone(client), batch.clone());
+        async move { super::doors::zenoh::asked(&client, &batch).await.map(drop).map_err(|error| error.message) }
     })
     .await
 }

@@ -10,8 +10,10 @@ use tokio::runtime::Runtime;
 
 use super::super::exit_code::Failed;
 use super::super::folder::Folder;
+#[cfg(feature = "shared-memory")]
+use super::super::own_name::OwnName;
 use super::asker::{Asker, InProcess};
-use super::doors::{self, OpenDoor};
+use super::doors::{self, OpenDoor, Place};
 use super::placement::Placement;
 use super::report::{Report, Row};
 use super::sampling::Times;
@@ -54,7 +56,15 @@ const WARM: usize = 3;
 /// # Errors
 /// A door that cannot be opened, answers that differ, or output that cannot be written.
 pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Failed> {
+    // What is made first goes last.
+    #[cfg(feature = "shared-memory")]
+    let own = OwnName::new("bench");
     let (folder, placement) = (Folder::new()?, Placement::new()?);
+    let place = Place {
+        folder: folder.path(),
+        #[cfg(feature = "shared-memory")]
+        own: &own,
+    };
     // The threads that answer questions run anywhere.
     let service = Service::new(&Config { threads: 0, limits: Limits::default() }).map_err(Failed::failure)?;
     placement.as_daemon()?;
@@ -62,7 +72,7 @@ pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Fail
     let address = doors::serve_grpc(&service, runtime.handle(), "127.0.0.1:0")?;
     let client = runtime.block_on(Client::connect(&address)).map_err(Failed::daemon)?;
     let probe = runtime.block_on(Workload::probe(&client))?;
-    let mut doors = doors::open(&service, runtime.handle(), folder.path(), Duration::from_micros(flags.spin))?;
+    let mut doors = doors::open(&service, runtime.handle(), place, Duration::from_micros(flags.spin))?;
     let (mut tcp, mut unix) = bare_sockets(folder.path())?;
     placement.as_caller()?;
     let mut here = InProcess::new(&service)?;
@@ -83,7 +93,7 @@ pub(super) fn run(flags: &Transports, output: &mut dyn Write) -> Result<(), Fail
     placement.anywhere()?;
     let unplaced = threads()?;
     let planner = runtime.block_on(Workload::planner(&client))?;
-    let measured = throughput::measure(&service, unplaced.handle(), folder.path(), &planner, flags.seconds)?;
+    let measured = throughput::measure(&service, unplaced.handle(), place, &planner, flags.seconds)?;
     report.throughput(&measured)?;
     unplaced.shutdown_background();
     runtime.shutdown_background();

@@ -10,6 +10,9 @@ use crate::transports::grpc::{BulkClient, BulkStates};
 
 /// Times that each door is asked.
 const TIMES: usize = 15;
+/// How long an answer is waited for.
+#[cfg(feature = "zenoh")]
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What came through one door.
 pub struct Through {
@@ -29,33 +32,43 @@ pub struct Doors {
     pub folder: PathBuf,
 }
 
+/// What is asked of each.
+pub struct Asked<'a> {
+    /// Of which scene.
+    pub target: &'a Target,
+    /// In which states.
+    pub question: &'a CheckStates,
+    /// Numbers of one state.
+    pub width: usize,
+}
+
 impl Doors {
-    /// Asks through each, one after the other; a state has `width` numbers.
+    /// Asks through each, one after the other.
     ///
     /// # Errors
-    /// A door that gives no answer.
-    pub async fn ask(&self, target: &Target, (question, width): (&CheckStates, usize)) -> Result<Vec<Through>, Failed> {
-        // Only columns of shared memory have to be told.
-        _ = width;
+    /// A door that gives no answer, or one that the tour does not know.
+    pub async fn ask(&self, asked: &Asked<'_>) -> Result<Vec<Through>, Failed> {
         let mut all = Vec::new();
         for door in &self.open {
-            match door.kind {
-                "grpc" => all.push(through_grpc(&door.address, target, question).await?),
+            all.push(match door.kind {
+                "grpc" => through_grpc(&door.address, asked).await?,
                 #[cfg(feature = "shared-memory")]
                 "shared-memory" => {
-                    let ask = || through_shared_memory(&door.address, &self.folder, target, (question, width));
-                    all.push(tokio::task::block_in_place(ask)?);
+                    let ask = || through_shared_memory(&door.address, &self.folder, asked);
+                    tokio::task::block_in_place(ask)?
                 }
-                _ => {}
-            }
+                #[cfg(feature = "zenoh")]
+                "zenoh" => through_zenoh(&door.address, asked).await?,
+                unknown => return Err(Failed::failure(format!("the tour does not know the door {unknown:?}"))),
+            });
         }
         Ok(all)
     }
 }
 
-async fn through_grpc(address: &str, target: &Target, question: &CheckStates) -> Result<Through, Failed> {
+async fn through_grpc(address: &str, asked: &Asked<'_>) -> Result<Through, Failed> {
     let client = BulkClient::connect(address).await.map_err(Failed::daemon)?;
-    let batch = BulkStates::new(target, question);
+    let batch = BulkStates::new(asked.target, asked.question);
     let (mut times, mut free) = (Vec::new(), Vec::new());
     for _ in 0..TIMES {
         let begun = Instant::now();
@@ -67,23 +80,36 @@ async fn through_grpc(address: &str, target: &Target, question: &CheckStates) ->
 }
 
 #[cfg(feature = "shared-memory")]
-fn through_shared_memory(
-    name: &str,
-    folder: &std::path::Path,
-    target: &Target,
-    (question, width): (&CheckStates, usize),
-) -> Result<Through, Failed> {
+fn through_shared_memory(name: &str, folder: &std::path::Path, asked: &Asked<'_>) -> Result<Through, Failed> {
     use crate::transports::shared_memory::{Ask, Client, Options};
     let mut client = Client::connect(name, folder).map_err(Failed::daemon)?;
-    let ask = Ask::States(question, width);
+    let ask = Ask::States(asked.question, asked.width);
     let (mut times, mut free) = (Vec::new(), Vec::new());
     for _ in 0..TIMES {
         let begun = Instant::now();
-        let reply = client.ask(target, ask, &Options::default()).map_err(Failed::daemon)?;
+        let reply = client.ask(asked.target, ask, &Options::default()).map_err(Failed::daemon)?;
         times.push(begun.elapsed());
         free = reply.free();
     }
     Ok(Through { door: "shared memory", free, median: median(times) })
+}
+
+#[cfg(feature = "zenoh")]
+async fn through_zenoh(endpoint: &str, asked: &Asked<'_>) -> Result<Through, Failed> {
+    use crate::app::defaults::ZENOH_PREFIX;
+    use crate::transports::grpc::BulkVerdicts;
+    use crate::transports::zenoh::Client;
+    let client = Client::connect(endpoint, ZENOH_PREFIX).await.map_err(Failed::daemon)?;
+    let message = BulkStates::new(asked.target, asked.question).encoded();
+    let (mut times, mut free) = (Vec::new(), Vec::new());
+    for _ in 0..TIMES {
+        let begun = Instant::now();
+        let called = client.call("Queries/CheckStates", message.clone(), PATIENCE).await;
+        let verdicts = BulkVerdicts::decode(called.map_err(Failed::daemon)?).map_err(Failed::daemon)?;
+        times.push(begun.elapsed());
+        free = verdicts.free();
+    }
+    Ok(Through { door: "zenoh", free, median: median(times) })
 }
 
 fn median(mut times: Vec<Duration>) -> f64 {

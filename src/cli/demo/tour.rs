@@ -2,26 +2,38 @@
 
 use std::collections::BTreeMap;
 use std::io::Write;
+#[cfg(feature = "shared-memory")]
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
 use super::super::exit_code::Failed;
 use super::super::folder::Folder;
+#[cfg(feature = "shared-memory")]
+use super::super::own_name::OwnName;
 use super::super::sample;
 use super::super::scene_file::{SceneEntry, StateLine};
 use super::super::state_line::{AnswerLine, Names};
 use super::super::words;
-use super::doors::Doors;
+use super::doors::{Asked, Doors};
 use super::report::{Cast, HEADINGS, row};
 
-use crate::app::{Daemon, GrpcSettings, Settings, SharedMemorySettings, stop_signal};
+#[cfg(any(feature = "shared-memory", feature = "zenoh"))]
+use crate::app::DoorChoice;
+#[cfg(feature = "zenoh")]
+use crate::app::defaults::ZENOH_PREFIX;
+use crate::app::{Daemon, GrpcSettings, Settings, stop_signal};
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckStates, Context, ItemAnswer, Mode, Side, Verdict, Wants};
 use crate::robot::{LinkOptions, MeshUse, ModelOptions};
 use crate::scene::{BodyRef, NewBody, Revision};
 use crate::service::{ContentHash, RevisionRule, RobotDescription, Rule, Target};
 use crate::transports::grpc::{Client, RemoteEdit, RemoteRobot};
+#[cfg(feature = "shared-memory")]
+use crate::transports::shared_memory;
+#[cfg(feature = "zenoh")]
+use crate::transports::zenoh;
 
 /// Flags of `clearance demo`.
 #[derive(clap::Args, Clone, Debug)]
@@ -42,6 +54,9 @@ const ROWS: usize = 6;
 const LINE: usize = 200;
 /// States of a large question.
 const BATCH: usize = 1024;
+/// Its largest message in shared memory: some megabytes of it are everywhere, in a container, too.
+#[cfg(feature = "shared-memory")]
+const TOUR_BYTES: usize = 1 << 20;
 
 /// Runs the tour against a daemon of its own.
 ///
@@ -56,12 +71,26 @@ pub fn run(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
 
 async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> {
     let grpc = GrpcSettings { address: Some("127.0.0.1:0".to_owned()), ..GrpcSettings::default() };
-    // A name and a folder of its own: those of the defaults stay with the daemon that serves.
+    // A name and a folder of its own: those of the defaults stay with the daemon that serves. What is made first goes last.
+    #[cfg(feature = "shared-memory")]
+    let own = OwnName::new("demo");
     let folder = Folder::new()?;
-    let name = Some(format!("demo-{}", std::process::id()));
-    let root = Some(folder.path().to_owned());
-    let shared_memory = SharedMemorySettings { name, root, ..SharedMemorySettings::default() };
-    let config = Settings { grpc, shared_memory, ..Settings::default() }.resolve().map_err(Failed::failure)?;
+    #[allow(unused_mut, reason = "there may be one door alone")]
+    let mut config = Settings { grpc, ..Settings::default() }.resolve().map_err(Failed::failure)?;
+    #[cfg(feature = "shared-memory")]
+    {
+        // A tour without it is better than none.
+        let limits = &mut config.service.limits;
+        limits.max_shared_memory_clients = 1;
+        limits.max_shared_memory_request_bytes = TOUR_BYTES;
+        limits.max_shared_memory_response_bytes = TOUR_BYTES;
+        let (name, root) = (own.name().to_owned(), folder.path().to_owned());
+        config.shared_memory = DoorChoice::IfPossible(shared_memory::Config { name, root, spin: Duration::ZERO });
+    }
+    #[cfg(feature = "zenoh")]
+    {
+        config.zenoh = DoorChoice::On(zenoh::Config::on_loopback(ZENOH_PREFIX));
+    }
     let daemon = Daemon::build(&config).await.map_err(Failed::failure)?;
     let doors = Doors { open: daemon.doors(), folder: folder.path().to_owned() };
     let grpc = doors.open.iter().find(|door| door.kind == "grpc");
@@ -277,7 +306,7 @@ impl Tour<'_> {
             let positions: Vec<f64> = cycle.take(items).flatten().copied().collect();
             let context = Context { wants: Wants::VERDICT, ..Context::default() };
             let question = CheckStates { robot: ROBOT.to_owned(), positions, mode: Mode::All, context };
-            let through = self.doors.ask(&target, (&question, width)).await?;
+            let through = self.doors.ask(&Asked { target: &target, question: &question, width }).await?;
             for one in &through {
                 let microseconds = one.median * 1e6;
                 let line = format!(

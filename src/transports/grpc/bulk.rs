@@ -37,7 +37,7 @@ impl BulkStates {
         self.0.encoded_len()
     }
 
-    /// The message itself.
+    /// The message, for doors that carry any message as bytes.
     #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         self.0.encode_to_vec()
@@ -52,7 +52,7 @@ pub struct BulkVerdicts {
 }
 
 impl BulkVerdicts {
-    /// From the response message.
+    /// From the bytes of the response message.
     ///
     /// # Errors
     /// There are none in it.

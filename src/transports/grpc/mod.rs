@@ -41,7 +41,7 @@ pub use client::{
 pub use credentials::{Bearer, Credentials, Identity};
 pub use door::{BindError, Config, Listening};
 pub use echo::GrpcEcho;
-pub use status::{query_error, status_of};
+pub use status::status_of;
 pub use tls::{TlsError, TlsFiles};
 pub use tokens::{Secret, TokenError, TokenSource};
 pub use web::BadOrigin;

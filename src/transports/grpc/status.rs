@@ -5,14 +5,14 @@ use tonic::metadata::MetadataMap;
 use tonic::{Code, Status};
 
 use crate::service::ServiceError;
-use crate::transports::wire::v1;
+use crate::transports::wire::to_proto::{ErrorCard, reason_name};
 use crate::transports::wire::v1::ErrorReason;
 
 /// The status of an error.
 #[must_use]
 pub fn status_of(error: &ServiceError) -> Status {
-    let (code, reason) = code_of(error);
-    with_reason(code, reason, &error.to_string(), details_of(error))
+    let ErrorCard { code, reason, details } = ErrorCard::of(error);
+    with_reason(Code::from_i32(code.into()), reason, &error.to_string(), details)
 }
 
 /// A status with what programs read of it.
@@ -22,7 +22,6 @@ pub(super) fn with_reason(
     message: &str,
     details: Vec<(&'static str, String)>,
 ) -> Status {
-    let name = reason.as_str_name();
     let mut metadata = MetadataMap::new();
     let mut put = |key: &'static str, value: String| {
         // A name that is not ASCII has no place in metadata; the message has it.
@@ -30,63 +29,11 @@ pub(super) fn with_reason(
             metadata.insert(key, value);
         }
     };
-    put("clearance-reason", name.strip_prefix("ERROR_REASON_").unwrap_or(name).to_owned());
+    put("clearance-reason", reason_name(reason).to_owned());
     for (key, value) in details {
         put(key, value);
     }
     Status::with_metadata(code, message, metadata)
-}
-
-/// The same as a message, for errors that do not end a stream.
-#[must_use]
-pub fn query_error(error: &ServiceError) -> v1::QueryError {
-    let (code, reason) = code_of(error);
-    let details = details_of(error).into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    v1::QueryError { code: code.into(), reason: reason.into(), message: error.to_string(), details }
-}
-
-fn code_of(error: &ServiceError) -> (Code, ErrorReason) {
-    match error {
-        ServiceError::Invalid { .. } => (Code::InvalidArgument, ErrorReason::InvalidField),
-        ServiceError::NotFound { .. } => (Code::NotFound, ErrorReason::NotFound),
-        ServiceError::AlreadyExists { .. } => (Code::AlreadyExists, ErrorReason::AlreadyExists),
-        ServiceError::EditRefused { .. } => (Code::FailedPrecondition, ErrorReason::EditRefused),
-        ServiceError::KeyReused { .. } => (Code::InvalidArgument, ErrorReason::KeyReused),
-        ServiceError::WrongEpoch { .. } => (Code::FailedPrecondition, ErrorReason::WrongEpoch),
-        ServiceError::RevisionMovedOn { .. } => (Code::Aborted, ErrorReason::RevisionMovedOn),
-        ServiceError::RevisionGone { .. } => (Code::OutOfRange, ErrorReason::RevisionGone),
-        ServiceError::RevisionNotYet { .. } => (Code::Unavailable, ErrorReason::RevisionNotYet),
-        ServiceError::Limit(_) => (Code::ResourceExhausted, ErrorReason::LimitExceeded),
-        ServiceError::DeadlineExceeded => (Code::DeadlineExceeded, ErrorReason::DeadlineExceeded),
-        ServiceError::HashMismatch { .. } => (Code::DataLoss, ErrorReason::HashMismatch),
-        ServiceError::ShuttingDown => (Code::Unavailable, ErrorReason::ShuttingDown),
-        ServiceError::Internal { .. } => (Code::Internal, ErrorReason::Internal),
-    }
-}
-
-fn details_of(error: &ServiceError) -> Vec<(&'static str, String)> {
-    match error {
-        ServiceError::Invalid { field, .. } | ServiceError::EditRefused { field, .. } => {
-            vec![("clearance-field", field.clone())]
-        }
-        ServiceError::WrongEpoch { current, .. } => vec![("clearance-epoch", current.to_string())],
-        ServiceError::RevisionMovedOn { current, .. } | ServiceError::RevisionNotYet { current, .. } => {
-            vec![("clearance-revision", current.to_string())]
-        }
-        ServiceError::RevisionGone { oldest, .. } => vec![("clearance-oldest-revision", oldest.to_string())],
-        ServiceError::Limit(exceeded) => vec![
-            ("clearance-limit", exceeded.limit.to_owned()),
-            ("clearance-asked", exceeded.asked.to_string()),
-            ("clearance-allowed", exceeded.allowed.to_string()),
-        ],
-        ServiceError::NotFound { .. }
-        | ServiceError::AlreadyExists { .. }
-        | ServiceError::KeyReused { .. }
-        | ServiceError::DeadlineExceeded
-        | ServiceError::HashMismatch { .. }
-        | ServiceError::ShuttingDown
-        | ServiceError::Internal { .. } => Vec::new(),
-    }
 }
 
 #[cfg(test)]
@@ -110,5 +57,23 @@ mod tests {
         assert_eq!(status.message(), "päth\n: is odd");
         assert!(status.metadata().get("clearance-field").is_none());
         assert!(status.metadata().get("clearance-reason").is_some());
+    }
+
+    /// What the table says of codes, tonic says, too.
+    #[test]
+    fn codes_are_those_of_grpc() {
+        let of = |error: ServiceError| status_of(&error).code();
+        assert_eq!(of(ServiceError::invalid("x", "y")), Code::InvalidArgument);
+        assert_eq!(of(ServiceError::DeadlineExceeded), Code::DeadlineExceeded);
+        assert_eq!(of(ServiceError::NotFound { what: "scene", name: String::new() }), Code::NotFound);
+        assert_eq!(of(ServiceError::AlreadyExists { what: "scene", name: String::new() }), Code::AlreadyExists);
+        let refused = ServiceError::EditRefused { field: String::new(), problem: String::new() };
+        assert_eq!(of(refused), Code::FailedPrecondition);
+        let (expected, current) = (crate::scene::Revision(1), crate::scene::Revision(2));
+        assert_eq!(of(ServiceError::RevisionMovedOn { expected, current }), Code::Aborted);
+        assert_eq!(of(ServiceError::RevisionGone { asked: expected, oldest: current }), Code::OutOfRange);
+        assert_eq!(of(ServiceError::HashMismatch { problem: String::new() }), Code::DataLoss);
+        assert_eq!(of(ServiceError::ShuttingDown), Code::Unavailable);
+        assert_eq!(of(ServiceError::Internal { incident: 1 }), Code::Internal);
     }
 }

@@ -10,7 +10,7 @@ use super::gate::Caller;
 use super::grpc_timeout::grpc_timeout;
 use super::handlers::Handlers;
 use super::items::Items;
-use super::status::{query_error, status_of};
+use super::status::status_of;
 use crate::service::ServiceError;
 use crate::transports::requests::{self, PoseMessages, QueryMessages, SceneMessages};
 use crate::transports::wire::v1;
@@ -120,7 +120,7 @@ impl Handlers {
     ) -> Result<MessageStream<QueryMessages<Streaming<v1::QueryStreamRequest>>>, ServiceError> {
         let timeout = grpc_timeout(request.metadata())?;
         let caller = caller(&request);
-        let questions = requests::query_stream(&self.service, request.into_inner(), timeout, query_error)?;
+        let questions = requests::query_stream(&self.service, request.into_inner(), timeout)?;
         Ok(MessageStream::new(questions, caller))
     }
 }

@@ -102,7 +102,7 @@ impl Call<'_> {
     }
 }
 
-fn decoded<M: Message + Default>(message: Bytes) -> Result<M, ServiceError> {
+pub(super) fn decoded<M: Message + Default>(message: Bytes) -> Result<M, ServiceError> {
     M::decode(message).map_err(|error| ServiceError::invalid("message", error))
 }
 

@@ -1,15 +1,13 @@
-//! How much work is a question? What is surely little is answered by the task that has read it: to hand it to another
-//! thread and to be woken by it costs tens of microseconds, more than the answer.
+//! How much work is a question? What is surely little is answered by the task that has read it.
 
+use crate::service::FEW_ITEMS;
 use crate::transports::wire::v1;
 use crate::transports::wire::v1::doubles::Form;
 use crate::transports::wire::v1::shape::Core;
 use crate::transports::wire::v1::subject::Kind;
 
-/// Items that are little work together.
-pub(super) const FEW: usize = 8;
 /// Joint positions of so many states, of an arm with sixteen joints.
-const FEW_POSITIONS: usize = FEW * 16;
+const FEW_POSITIONS: usize = FEW_ITEMS * 16;
 
 /// An estimate from the message alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,12 +30,12 @@ impl Effort {
 
     /// Of subjects. All pairs, and shapes that have to be built first, may take long.
     pub fn of_subjects(items: &[v1::Subject], context: Option<&v1::Context>) -> Self {
-        Self::little_if(items.len() <= FEW && items.iter().all(is_quick) && is_as_is(context))
+        Self::little_if(items.len() <= FEW_ITEMS && items.iter().all(is_quick) && is_as_is(context))
     }
 
     /// Of rays.
     pub fn of_rays(message: &v1::CastRaysRequest) -> Self {
-        Self::little_if(numbers(message.origins.as_ref()) <= 3 * FEW)
+        Self::little_if(numbers(message.origins.as_ref()) <= 3 * FEW_ITEMS)
     }
 }
 
@@ -98,8 +96,8 @@ mod tests {
             v1::Subject { kind: Some(Kind::Shape(v1::PlacedShape { shape, pose: None })) }
         };
         let of = |items: Vec<v1::Subject>| Effort::of_subjects(&items, None);
-        assert_eq!(of((0..FEW).map(|_| body()).collect()), Effort::Little);
-        assert_eq!(of((0..=FEW).map(|_| body()).collect()), Effort::Any);
+        assert_eq!(of((0..FEW_ITEMS).map(|_| body()).collect()), Effort::Little);
+        assert_eq!(of((0..=FEW_ITEMS).map(|_| body()).collect()), Effort::Any);
         assert_eq!(of(vec![body(), all()]), Effort::Any);
         assert_eq!(of(vec![shape(Core::Sphere(v1::Sphere { radius: 1.0 }))]), Effort::Little);
         assert_eq!(of(vec![shape(Core::Convex(v1::Convex::default()))]), Effort::Any);

@@ -14,6 +14,7 @@ mod robots;
 mod rpc;
 mod scenes;
 mod server;
+mod steps;
 mod watch;
 
 pub use assets::{describe_mesh, has_assets, put_asset_response};
@@ -29,4 +30,5 @@ pub use robots::{get_robot, list_robots, load_robot};
 pub use rpc::rpc_named;
 pub use scenes::{apply, create_scene, delete_scene, get_scene, get_scene_health, list_scenes};
 pub use server::get_server_info;
+pub use steps::{StepMessage, Steps, steps};
 pub use watch::{SceneMessages, watch};

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::limits::LimitExceeded;
 use crate::service::{Asker, Call, Permit, Rpc, Service, ServiceError};
-use crate::transports::wire::v1;
+use crate::transports::wire::{to_proto, v1};
 use crate::transports::wire::v1::query_stream_request::Question;
 use crate::transports::wire::v1::query_stream_response::Outcome;
 
@@ -39,8 +39,6 @@ pub struct QueryMessages<S> {
     in_order: bool,
     most: usize,
     ended: bool,
-    /// Turns an error into what the caller sees.
-    refusal: fn(&ServiceError) -> v1::QueryError,
     _permit: Permit,
 }
 
@@ -52,7 +50,6 @@ pub fn query_stream<S>(
     service: &Arc<Service>,
     sent: S,
     timeout: Option<Duration>,
-    refusal: fn(&ServiceError) -> v1::QueryError,
 ) -> Result<QueryMessages<S>, ServiceError> {
     Ok(QueryMessages {
         _permit: service.enter_stream()?,
@@ -68,7 +65,6 @@ pub fn query_stream<S>(
         in_order: false,
         most: service.limits().max_stream_in_flight,
         ended: false,
-        refusal,
     })
 }
 
@@ -134,7 +130,7 @@ where
             self.in_order = options.in_order;
             return Ok(());
         }
-        let (service, refusal, number) = (Arc::clone(&self.service), self.refusal, self.taken);
+        let (service, number) = (Arc::clone(&self.service), self.taken);
         let timeout = self.until.map(|until| until.saturating_duration_since(Instant::now()));
         self.taken += 1;
         let call = match (&self.asker, question.as_ref().and_then(rpc_of)) {
@@ -143,7 +139,7 @@ where
         };
         self.under_way.spawn(async move {
             let outcome = call.answer(answer(&service, question, timeout)).await;
-            let outcome = outcome.unwrap_or_else(|error| Outcome::Error(refusal(&error)));
+            let outcome = outcome.unwrap_or_else(|error| Outcome::Error(to_proto::query_error(&error)));
             (number, v1::QueryStreamResponse { id, outcome: Some(outcome) })
         });
         Ok(())

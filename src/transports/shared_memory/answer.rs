@@ -2,7 +2,6 @@
 //! the wire; and beside them, where wanted, sides, witnesses and listed pairs.
 
 use super::codes;
-use super::error_card::ErrorCard;
 use super::layout::{ABI_HASH, MAGIC, ResponseHeader, VERSION, kind};
 use super::request::{Nonce, question_number};
 use super::sections::Writer;
@@ -10,6 +9,7 @@ use crate::geometry::Vec3;
 use crate::narrow_phase::Cost;
 use crate::query::{Answer, Answers, CastHit, CastItem, ItemAnswer, MotionAnswer, PairAnswer, Side, Wants, Witness};
 use crate::service::ServiceError;
+use crate::transports::wire::to_proto::ErrorCard;
 
 /// What an answer has of its request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,12 +114,13 @@ pub fn response_message(nonce: Nonce, response: &[u8]) -> Vec<u8> {
 pub fn error_message(nonce: Nonce, error: &ServiceError) -> Vec<u8> {
     let card = ErrorCard::of(error);
     let mut writer = Writer::new(ResponseHeader::BYTES, 4);
-    writer.text(kind::ERROR_REASON, card.reason);
+    writer.text(kind::ERROR_REASON, card.reason_name());
     writer.text(kind::ERROR_MESSAGE, cut(&error.to_string()));
-    if let Some((_, field)) = card.details.iter().find(|(key, _)| *key == "field") {
+    let named = |key: &'static str| key.strip_prefix("clearance-").unwrap_or(key);
+    if let Some((_, field)) = card.details.iter().find(|(key, _)| named(key) == "field") {
         writer.text(kind::ERROR_FIELD, cut(field));
     }
-    let lines: String = card.details.iter().map(|(key, value)| format!("{key}={value}\n")).collect();
+    let lines: String = card.details.iter().map(|(key, value)| format!("{}={value}\n", named(key))).collect();
     writer.text(kind::ERROR_DETAILS, cut(&lines));
     finished(writer, ResponseHeader { nonce, code: card.code.into(), ..ResponseHeader::default() })
 }

@@ -21,14 +21,12 @@ use super::request::{Called, ClientId, Nonce, PairsOf, Question, Received, Reque
 use super::subjects::Asked;
 use crate::limits::LimitExceeded;
 use crate::query::{Motions, Subject};
-use crate::service::{Asker, Call, Outcome, Rpc, Service, ServiceError, Traffic, View, Waiting};
+use crate::service::{Asker, Call, FEW_ITEMS, Outcome, Rpc, Service, ServiceError, Traffic, View, Waiting};
 use crate::transports::requests;
 
 /// A request that waits for its answer.
 type Pending = ActiveRequest<Ipc, [Line], (), [Line], ()>;
 
-/// Questions of no more items than this are answered on the door's own thread: to hand them over costs more.
-const SMALL: usize = 8;
 /// A sleeping door looks around this often without being woken.
 const LOOK: Duration = Duration::from_secs(1);
 /// The same while it drains.
@@ -99,18 +97,19 @@ impl Attendant {
             if draining && self.desk.handed_over.load(Ordering::Acquire) == 0 {
                 return Ok(());
             }
+            // Work for nobody stops here; what is answered has no request left.
+            self.handed_over.retain(|(pending, _)| pending.upgrade().is_some_and(|pending| is_wanted(&pending)));
             if any && self.comes_soon() {
                 continue;
             }
-            // Work for nobody stops here; what is answered has no request left.
-            self.handed_over.retain(|(pending, _)| pending.upgrade().is_some_and(|pending| is_wanted(&pending)));
             let look = match (draining, self.handed_over.is_empty()) {
                 (true, _) => LOOK_DRAINING,
                 (false, false) => STILL_THERE,
                 (false, true) => LOOK,
             };
             let woken = sleep(&self.ports.asked, look)?;
-            if woken == 0 && look == LOOK || cleaned.elapsed() > CLEANUP {
+            // Where nothing comes, or only work for somebody who may have died is left.
+            if woken == 0 && cleaned.elapsed() >= LOOK || cleaned.elapsed() > CLEANUP {
                 self.ports.node.try_cleanup_dead_nodes();
                 cleaned = Instant::now();
             }
@@ -277,7 +276,7 @@ fn is_small(request: &Request) -> bool {
         Question::Motions(..) => false,
         Question::Pairs { items, .. } => !items.iter().any(all_pairs),
     };
-    quick && request.items <= SMALL
+    quick && request.items <= FEW_ITEMS
 }
 
 /// The rpc that asks the same through other doors.

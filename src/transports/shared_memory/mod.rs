@@ -11,7 +11,6 @@ mod codes;
 mod door;
 mod echo;
 mod endpoint;
-mod error_card;
 pub mod layout;
 mod message;
 mod questions;

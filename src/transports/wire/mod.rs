@@ -5,5 +5,3 @@ pub(in crate::transports) mod descriptors;
 pub mod from_proto;
 pub mod to_proto;
 pub mod v1;
-
-pub use prost::bytes;

@@ -9,11 +9,11 @@ use clearance::transports::wire::v1::ContactState;
 use clearance::transports::wire::v1::revision_rule::Rule;
 use tonic::Code;
 
-use super::through_doors_with_streams;
-use crate::support::door::{Contacts, Refusal, Streams};
+use super::through_doors_with_watches;
+use crate::support::door::{Contacts, Refusal, Watches};
 use crate::support::messages::*;
 
-through_doors_with_streams!(
+through_doors_with_watches!(
     the_first_step_has_every_contact_and_the_next_ones_what_changed,
     a_step_says_why_a_contact_ended,
     what_stays_is_listed_where_asked,
@@ -43,7 +43,7 @@ fn to(name: &str, x: f64) -> v1::Edit {
 }
 
 /// Balls named by their order, `x` metres along x.
-async fn balls(door: &impl Streams, centres: &[f64]) {
+async fn balls(door: &impl Watches, centres: &[f64]) {
     door.create_scene(SCENE).await.unwrap();
     let balls = centres.iter().enumerate().map(|(i, x)| ball(&format!("{i}"), *x));
     door.apply(apply(balls.collect())).await.unwrap();
@@ -58,7 +58,7 @@ fn step(message: &v1::WatchContactsResponse) -> Step {
     (message.from_revision, message.revision, events)
 }
 
-async fn the_first_step_has_every_contact_and_the_next_ones_what_changed(door: &impl Streams) {
+async fn the_first_step_has_every_contact_and_the_next_ones_what_changed(door: &impl Watches) {
     balls(door, &[0.0, 0.9, 1.8, 5.0]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
     let first = watch.message().await.unwrap();
@@ -78,7 +78,7 @@ async fn the_first_step_has_every_contact_and_the_next_ones_what_changed(door: &
     assert_eq!(step(&watch.message().await.unwrap()), (Some(2), 3, Vec::new()));
 }
 
-async fn a_step_says_why_a_contact_ended(door: &impl Streams) {
+async fn a_step_says_why_a_contact_ended(door: &impl Watches) {
     balls(door, &[0.0, 0.8, 1.6, 2.4, 3.2]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
     assert_eq!(watch.message().await.unwrap().contacts, 4);
@@ -104,7 +104,7 @@ async fn a_step_says_why_a_contact_ended(door: &impl Streams) {
     assert_eq!((message.contacts, message.events.len()), (0, 1));
 }
 
-async fn what_stays_is_listed_where_asked(door: &impl Streams) {
+async fn what_stays_is_listed_where_asked(door: &impl Watches) {
     balls(door, &[0.0, 0.8, 5.0]).await;
     let mut watch = door.watch_contacts(v1::WatchContactsRequest { stays: true, ..watch() }).await.unwrap();
     let first = watch.message().await.unwrap();
@@ -114,7 +114,7 @@ async fn what_stays_is_listed_where_asked(door: &impl Streams) {
     assert_eq!(second.events[0].pair, first.events[0].pair, "what is known of a pair that rests stays true");
 }
 
-async fn a_margin_counts_where_asked(door: &impl Streams) {
+async fn a_margin_counts_where_asked(door: &impl Watches) {
     balls(door, &[0.0, 1.1]).await;
     let context = Some(v1::Context { margin: 0.2, ..context() });
     let threshold = v1::ContactThreshold::Margin.into();
@@ -124,7 +124,7 @@ async fn a_margin_counts_where_asked(door: &impl Streams) {
     assert_eq!(touching.message().await.unwrap().contacts, 0);
 }
 
-async fn undecided_pairs_are_told(door: &impl Streams) {
+async fn undecided_pairs_are_told(door: &impl Watches) {
     door.create_scene(SCENE).await.unwrap();
     let cylinder = || shape(v1::shape::Core::Cylinder(v1::Cylinder { radius: 0.625, half_length: 1.0 }));
     // The rims touch off the axes, where no bracket proves it.
@@ -140,7 +140,7 @@ async fn undecided_pairs_are_told(door: &impl Streams) {
 }
 
 /// However steps are joined, they lead from one to the next, and to what is there in the end.
-async fn a_reader_that_does_not_read_is_led_over_several_revisions(door: &impl Streams) {
+async fn a_reader_that_does_not_read_is_led_over_several_revisions(door: &impl Watches) {
     balls(door, &[0.0, 0.9, 5.0]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
     let mut told = watch.message().await.unwrap();
@@ -167,7 +167,7 @@ async fn a_reader_that_does_not_read_is_led_over_several_revisions(door: &impl S
     assert!((1..=10).contains(&messages), "{messages}");
 }
 
-async fn a_watch_can_begin_at_an_earlier_revision(door: &impl Streams) {
+async fn a_watch_can_begin_at_an_earlier_revision(door: &impl Watches) {
     balls(door, &[0.0, 0.9]).await;
     door.apply(apply(vec![to("1", 3.0)])).await.unwrap();
     let request = v1::WatchContactsRequest { context: Some(asked_of(Rule::Exactly(1))), ..watch() };
@@ -176,7 +176,7 @@ async fn a_watch_can_begin_at_an_earlier_revision(door: &impl Streams) {
     assert_eq!(step(&watch.message().await.unwrap()), (Some(1), 2, vec![(End, 1, 2)]));
 }
 
-async fn long_lists_come_in_several_messages(door: &impl Streams) {
+async fn long_lists_come_in_several_messages(door: &impl Watches) {
     door.create_scene(SCENE).await.unwrap();
     let row = (0..5001).map(|i| ball(&format!("{i}"), 0.9 * f64::from(i)));
     door.apply(apply(row.collect())).await.unwrap();
@@ -193,7 +193,7 @@ async fn long_lists_come_in_several_messages(door: &impl Streams) {
     assert_eq!(pairs, (1..=5000).map(|i| (Begin, i, i + 1)).collect::<Vec<_>>());
 }
 
-async fn points_of_contact_are_told_where_wanted(door: &impl Streams) {
+async fn points_of_contact_are_told_where_wanted(door: &impl Watches) {
     balls(door, &[0.0, 0.75]).await;
     let wants = Some(v1::Wants { witness: true, depth: true, ..v1::Wants::default() });
     let request = v1::WatchContactsRequest { context: Some(v1::Context { wants, ..context() }), ..watch() };
@@ -203,7 +203,7 @@ async fn points_of_contact_are_told_where_wanted(door: &impl Streams) {
     assert!((pair.witness.unwrap().normal.unwrap().x - 1.0).abs() < 1e-9);
 }
 
-async fn a_deleted_scene_ends_a_watch(door: &impl Streams) {
+async fn a_deleted_scene_ends_a_watch(door: &impl Watches) {
     balls(door, &[0.0]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
     watch.message().await.unwrap();
@@ -217,14 +217,14 @@ async fn a_deleted_scene_ends_a_watch(door: &impl Streams) {
 }
 
 /// What a watch is refused with, at once or in the place of its first message.
-async fn refused(door: &impl Streams, request: v1::WatchContactsRequest) -> Refusal {
+async fn refused(door: &impl Watches, request: v1::WatchContactsRequest) -> Refusal {
     match door.watch_contacts(request).await {
         Ok(mut watch) => watch.message().await.unwrap_err(),
         Err(refusal) => refusal,
     }
 }
 
-async fn watchers_are_counted(door: &impl Streams) {
+async fn watchers_are_counted(door: &impl Watches) {
     balls(door, &[0.0]).await;
     let mut kept = [door.watch_contacts(watch()).await.unwrap(), door.watch_contacts(watch()).await.unwrap()];
     for watch in &mut kept {
@@ -243,7 +243,7 @@ async fn watchers_are_counted(door: &impl Streams) {
     }
 }
 
-async fn more_contacts_than_allowed_end_a_watch(door: &impl Streams) {
+async fn more_contacts_than_allowed_end_a_watch(door: &impl Watches) {
     balls(door, &[0.0, 0.9]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
     watch.message().await.unwrap();
@@ -254,7 +254,7 @@ async fn more_contacts_than_allowed_end_a_watch(door: &impl Streams) {
     assert!(refusal.message.starts_with("max_contacts exceeded: asked for "), "{refusal:?}");
 }
 
-async fn what_cannot_be_watched_is_refused_by_field(door: &impl Streams) {
+async fn what_cannot_be_watched_is_refused_by_field(door: &impl Watches) {
     balls(door, &[0.0]).await;
     let with = |context: v1::Context| v1::WatchContactsRequest { context: Some(context), ..watch() };
     let margin = v1::ContactThreshold::Margin.into();
@@ -285,7 +285,7 @@ async fn what_cannot_be_watched_is_refused_by_field(door: &impl Streams) {
     }
 }
 
-async fn watches_take_no_overlays(door: &impl Streams) {
+async fn watches_take_no_overlays(door: &impl Watches) {
     door.create_scene(SCENE).await.unwrap();
     for (field, context) in with_overlays() {
         let watch = v1::WatchContactsRequest { context: Some(context), ..watch() };

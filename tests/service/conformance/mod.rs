@@ -1,5 +1,5 @@
-//! What every door has to do. Each behaviour is written once, over [`Door`], and run through all of them; those of streams
-//! over [`Streams`], and run through the doors that have streams.
+//! What every door has to do. Each behaviour is written once, over [`Door`], and run through all of them; those of watches and of
+//! streams over [`Watches`] and [`Streams`], and run through the doors that have them.
 
 mod assets;
 mod bad_input;
@@ -36,13 +36,22 @@ macro_rules! through {
 /// Makes a test of each behaviour for each door.
 macro_rules! through_every_door {
     ($($behaviour:ident),* $(,)?) => {
-        super::through_doors_with_streams!($($behaviour),*);
+        super::through_doors_with_watches!($($behaviour),*);
         #[cfg(feature = "shared-memory")]
         super::through!(shared_memory, crate::support::shared_memory_door::SharedMemory, $($behaviour),*);
     };
 }
 
-/// Makes a test of each behaviour for each door that has streams.
+/// Makes a test of each behaviour for each door that has watches.
+macro_rules! through_doors_with_watches {
+    ($($behaviour:ident),* $(,)?) => {
+        super::through_doors_with_streams!($($behaviour),*);
+        #[cfg(feature = "zenoh")]
+        super::through!(zenoh, crate::support::zenoh_door::Zenoh, $($behaviour),*);
+    };
+}
+
+/// Makes a test of each behaviour for each door that has streams of what is sent.
 macro_rules! through_doors_with_streams {
     ($($behaviour:ident),* $(,)?) => {
         super::through!(in_process, crate::support::door::InProcess, $($behaviour),*);
@@ -51,4 +60,4 @@ macro_rules! through_doors_with_streams {
     };
 }
 
-use {through, through_doors_with_streams, through_every_door};
+use {through, through_doors_with_streams, through_doors_with_watches, through_every_door};

@@ -8,11 +8,11 @@ use clearance::limits::Limits;
 use clearance::transports::wire::v1;
 use tonic::Code;
 
-use super::through_doors_with_streams;
-use crate::support::door::{Messages, Streams};
+use super::through_doors_with_watches;
+use crate::support::door::{Messages, Watches};
 use crate::support::messages::*;
 
-through_doors_with_streams!(
+through_doors_with_watches!(
     a_copy_that_is_led_by_messages_is_the_scene,
     a_watch_begins_where_its_reader_is,
     a_reader_that_is_too_far_behind_is_given_the_whole_content,
@@ -36,7 +36,7 @@ fn from(revision: u64) -> v1::WatchRequest {
     v1::WatchRequest { from_revision: Some(revision), ..watch_scene() }
 }
 
-async fn contents(door: &impl Streams, revision: u64) -> v1::SceneContents {
+async fn contents(door: &impl Watches, revision: u64) -> v1::SceneContents {
     let rule = v1::revision_rule::Rule::Exactly(revision);
     let revision = Some(v1::RevisionRule { epoch: None, rule: Some(rule) });
     door.get_scene(v1::GetSceneRequest { scene: SCENE.to_owned(), revision, ..Default::default() }).await.unwrap()
@@ -134,7 +134,7 @@ impl Copy {
 }
 
 /// A watch, as soon as a connection has told that another is not read any more.
-async fn open<D: Streams>(door: &D, request: v1::WatchRequest) -> impl Messages<v1::WatchResponse> + use<'_, D> {
+async fn open<D: Watches>(door: &D, request: v1::WatchRequest) -> impl Messages<v1::WatchResponse> + use<'_, D> {
     let mut tries = 0;
     loop {
         match door.watch_scene(request.clone()).await {
@@ -146,7 +146,7 @@ async fn open<D: Streams>(door: &D, request: v1::WatchRequest) -> impl Messages<
     }
 }
 
-async fn whole(door: &impl Streams, request: v1::WatchRequest) -> Copy {
+async fn whole(door: &impl Watches, request: v1::WatchRequest) -> Copy {
     let mut watch = open(door, request).await;
     let (mut copy, mut inside, mut reached) = (Copy::default(), false, Reached::default());
     while !copy.follow(watch.message().await.unwrap().unwrap(), &mut inside, &mut reached) {}
@@ -226,7 +226,7 @@ fn voxels() -> v1::Shape {
     shape(v1::shape::Core::Voxels(v1::Voxels { resolution: 0.5, points: None, cells: vec![0, 0, 0] }))
 }
 
-async fn a_copy_that_is_led_by_messages_is_the_scene(door: &impl Streams) {
+async fn a_copy_that_is_led_by_messages_is_the_scene(door: &impl Watches) {
     door.create_scene(SCENE).await.unwrap();
     let model = door.load_robot(load(ROBOT)).await.unwrap().id;
     let random = &mut Random(7);
@@ -272,13 +272,13 @@ async fn a_copy_that_is_led_by_messages_is_the_scene(door: &impl Streams) {
     assert!(regimes.iter().all(|count| *count >= 3), "{reached:?}");
 }
 
-async fn balls(door: &impl Streams, count: usize) {
+async fn balls(door: &impl Watches, count: usize) {
     door.create_scene(SCENE).await.unwrap();
     let ball = |i: usize| add(&format!("{i}"), sphere(0.1), at(i as f64, 0.0, 0.0));
     door.apply(apply((0..count).map(ball).collect())).await.unwrap();
 }
 
-async fn a_watch_begins_where_its_reader_is(door: &impl Streams) {
+async fn a_watch_begins_where_its_reader_is(door: &impl Watches) {
     balls(door, 3).await;
     door.apply(apply(vec![move_to(named("1"), at(1.0, 5.0, 0.0)), remove(named("2"))])).await.unwrap();
     let mut watch = door.watch_scene(from(1)).await.unwrap();
@@ -297,7 +297,7 @@ async fn a_watch_begins_where_its_reader_is(door: &impl Streams) {
     assert_eq!((message.from_revision, message.revision, message.bodies.len()), (Some(2), 3, 0));
 }
 
-async fn a_reader_that_is_too_far_behind_is_given_the_whole_content(door: &impl Streams) {
+async fn a_reader_that_is_too_far_behind_is_given_the_whole_content(door: &impl Watches) {
     balls(door, 2).await;
     for i in 0..6 {
         door.apply(apply(vec![move_to(named("0"), at(f64::from(i), 1.0, 0.0))])).await.unwrap();
@@ -313,7 +313,7 @@ async fn a_reader_that_is_too_far_behind_is_given_the_whole_content(door: &impl 
     assert_eq!((message.from_revision, message.compacted, message.moved.len()), (Some(4), false, 1));
 }
 
-async fn a_reader_that_is_ahead_waits(door: &impl Streams) {
+async fn a_reader_that_is_ahead_waits(door: &impl Watches) {
     balls(door, 1).await;
     let mut watch = door.watch_scene(from(2)).await.unwrap();
     let early = tokio::time::timeout(Duration::from_millis(100), watch.message()).await;
@@ -327,7 +327,7 @@ async fn a_reader_that_is_ahead_waits(door: &impl Streams) {
     assert_eq!((message.from_revision, message.revision), (Some(2), 3));
 }
 
-async fn long_contents_come_in_several_messages(door: &impl Streams) {
+async fn long_contents_come_in_several_messages(door: &impl Watches) {
     balls(door, 12_000).await;
     let mut watch = door.watch_scene(watch_scene()).await.unwrap();
     let (mut copy, mut inside, mut messages) = (Copy::default(), false, 1);
@@ -344,7 +344,7 @@ async fn long_contents_come_in_several_messages(door: &impl Streams) {
     assert_eq!((message.from_revision, message.removed_bodies.as_slice()), (Some(1), &[12_000][..]));
 }
 
-async fn shapes_are_told_where_asked(door: &impl Streams) {
+async fn shapes_are_told_where_asked(door: &impl Watches) {
     door.create_scene(SCENE).await.unwrap();
     let body = v1::AddBody { padding: 0.25, scale: Some(2.0), ..v1::AddBody::default() };
     let body = v1::AddBody { name: "ball".to_owned(), shape: Some(sphere(0.5)), ..body };
@@ -354,7 +354,7 @@ async fn shapes_are_told_where_asked(door: &impl Streams) {
     assert_eq!(told(whole(door, v1::WatchRequest { shapes: true, ..watch_scene() }).await), [1.25]);
 }
 
-async fn a_deleted_scene_ends_a_watch(door: &impl Streams) {
+async fn a_deleted_scene_ends_a_watch(door: &impl Watches) {
     balls(door, 1).await;
     let mut watch = door.watch_scene(watch_scene()).await.unwrap();
     watch.message().await.unwrap();
@@ -363,7 +363,7 @@ async fn a_deleted_scene_ends_a_watch(door: &impl Streams) {
     assert_eq!((refusal.code, refusal.message.as_str()), (Code::NotFound, "no scene \"cell\""));
 }
 
-async fn what_cannot_be_watched_is_refused(door: &impl Streams) {
+async fn what_cannot_be_watched_is_refused(door: &impl Watches) {
     balls(door, 1).await;
     let refused = |request| async { door.watch_scene(request).await.err().unwrap() };
     let elsewhere = refused(v1::WatchRequest { scene: "elsewhere".to_owned(), ..watch_scene() }).await;
@@ -372,7 +372,7 @@ async fn what_cannot_be_watched_is_refused(door: &impl Streams) {
     assert_eq!((before.code, before.reason.as_str()), (Code::FailedPrecondition, "WRONG_EPOCH"));
 }
 
-async fn watches_of_scenes_and_contacts_are_counted_together(door: &impl Streams) {
+async fn watches_of_scenes_and_contacts_are_counted_together(door: &impl Watches) {
     balls(door, 1).await;
     let kept = (door.watch_scene(watch_scene()).await.unwrap(), door.watch_contacts(watch()).await.unwrap());
     let refusal = door.watch_scene(watch_scene()).await.err().unwrap();

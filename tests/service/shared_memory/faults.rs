@@ -9,6 +9,7 @@ use clearance::query::Context;
 use clearance::transports::grpc;
 use clearance::transports::shared_memory::layout::kind;
 use clearance::transports::shared_memory::{Ask, Client, ClientError, Options};
+use clearance::transports::wire::v1;
 
 use super::place::*;
 use crate::support::door::Door;
@@ -73,6 +74,39 @@ async fn a_client_killed_in_the_middle_leaves_nothing_to_the_next() {
         assert_eq!((first.items(), first.revision().0), (1, next - 1));
         eventually("the end of the dead client's question", || place.daemon.service.queries_in_flight() == 0).await;
     }
+}
+
+/// Not a test by itself: the client that the test below kills. Its question takes far longer than any test waits.
+#[test]
+#[ignore = "a process of the test of work that stops"]
+fn as_a_client_that_asks_much() {
+    let (name, root) = (std::env::var(NAME).unwrap(), std::env::var(ROOT).unwrap());
+    let mut client = Client::connect(&name, Path::new(&root)).unwrap();
+    let context = Context { wants: clearance::query::Wants::ALL, ..Context::default() };
+    let subjects = [clearance::transports::shared_memory::PlainSubject::All; 1000];
+    let options = Options { timeout: Duration::from_secs(600), ..Options::default() };
+    println!("answered {:?}", client.ask(&target(), Ask::Distance(&subjects, &context), &options));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn work_for_a_killed_client_stops() {
+    let place = Place::open(small()).await;
+    place.inside.create_scene(SCENE).await.unwrap();
+    let radii = Some(vec3(1.0, 0.8, 0.6));
+    let body = |i: u32| {
+        let core = v1::shape::Core::Ellipsoid(v1::Ellipsoid { radii });
+        add(&format!("body{i}"), shape(core), at(0.001 * f64::from(i), 0.0, 0.0))
+    };
+    place.inside.apply(apply((0..400).map(body).collect())).await.unwrap();
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", "--ignored", "--nocapture", "shared_memory::faults::as_a_client_that_asks_much"]);
+    command.env(NAME, &*place.name).env(ROOT, place.root());
+    let mut child = Killed(command.stdout(Stdio::null()).spawn().unwrap());
+    let service = &place.daemon.service;
+    eventually("the work", || service.queries_in_flight() == 1).await;
+    child.0.kill().unwrap();
+    child.0.wait().unwrap();
+    eventually("the end of the work", || service.queries_in_flight() == 0).await;
 }
 
 fn serve(name: &str, root: &Path) -> Command {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use clearance::app::SharedMemory;
+use clearance::app::DoorChoice;
 use clearance::limits::Limits;
 use clearance::query::{CheckStates, Context, Mode};
 use clearance::service::{RevisionRule, Rule, Target};
@@ -42,7 +42,7 @@ impl Place {
         let (name, root) = (unused_name(), tempfile::tempdir().unwrap());
         let door = Config { name: name.to_string(), root: root.path().to_owned(), spin: Duration::ZERO };
         let mut config = config(limits);
-        config.shared_memory = SharedMemory::On(door);
+        config.shared_memory = DoorChoice::On(door);
         let daemon = watched("the start of a daemon", RunningDaemon::start(&config)).await;
         let queries = QueriesClient::connect(format!("http://{}", daemon.address)).await.unwrap();
         let inside = InProcess { service: Arc::clone(&daemon.service) };

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use clearance::app::{Config, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings};
+use clearance::app::{Config, Daemon, Drained, GrpcSettings, Settings, SharedMemorySettings, ZenohSettings};
 use clearance::limits::Limits;
 use clearance::service::Service;
 use tokio::sync::oneshot;
@@ -19,10 +19,11 @@ pub struct RunningDaemon {
 
 pub fn config(limits: Limits) -> Config {
     let address = Some("127.0.0.1:0".to_owned());
-    // Tests run beside one another; those of shared memory give it names of their own.
+    // Tests run beside one another; those of other doors give them names and ports of their own.
     let shared_memory = SharedMemorySettings { enabled: Some(false), ..SharedMemorySettings::default() };
+    let zenoh = ZenohSettings { enabled: Some(false), ..ZenohSettings::default() };
     let grpc = GrpcSettings { address, ..GrpcSettings::default() };
-    let settings = Settings { threads: Some(2), grpc, shared_memory, ..Settings::default() };
+    let settings = Settings { threads: Some(2), grpc, shared_memory, zenoh, ..Settings::default() };
     let mut config = settings.resolve().unwrap();
     config.service.limits = limits;
     config

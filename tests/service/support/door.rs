@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clearance::limits::Limits;
 use clearance::service::{Config, ContactWatch, ContentHash, Service, ServiceError};
-use clearance::transports::grpc::{query_error, status_of};
+use clearance::transports::grpc::status_of;
 use clearance::transports::requests::{self, PoseMessages, QueryMessages, SceneMessages};
 use clearance::transports::wire::v1::assets_client::AssetsClient;
 use clearance::transports::wire::v1::put_asset_request::Part;
@@ -97,11 +97,16 @@ pub trait Door {
     }
 }
 
-/// A way to ask that has streams, too.
+/// A way to ask that has watches, too.
 #[allow(async_fn_in_trait, reason = "the tests know all implementations")]
-pub trait Streams: Door {
+pub trait Watches: Door {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts>;
     async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>>;
+}
+
+/// A way to ask that has streams of what is sent, too.
+#[allow(async_fn_in_trait, reason = "the tests know all implementations")]
+pub trait Streams: Watches {
     async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)>;
     async fn query_stream(&self) -> Told<(Sent<v1::QueryStreamRequest>, impl Messages<v1::QueryStreamResponse>)>;
 }
@@ -206,7 +211,7 @@ impl Door for InProcess {
     }
 }
 
-impl Streams for InProcess {
+impl Watches for InProcess {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         let watch = requests::watch_contacts(&self.service, &request, None).await?;
         Ok(InProcessContacts { watch: Some(watch), messages: VecDeque::new() })
@@ -215,7 +220,9 @@ impl Streams for InProcess {
     async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>> {
         Ok(requests::watch(&self.service, &request, None)?)
     }
+}
 
+impl Streams for InProcess {
     async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)> {
         let (sender, sent) = sending();
         Ok((sender, requests::pose_stream(&self.service, sent.map(Ok::<_, Infallible>), None)))
@@ -223,7 +230,7 @@ impl Streams for InProcess {
 
     async fn query_stream(&self) -> Told<(Sent<v1::QueryStreamRequest>, impl Messages<v1::QueryStreamResponse>)> {
         let (sender, sent) = sending();
-        Ok((sender, requests::query_stream(&self.service, sent.map(Ok::<_, Infallible>), None, query_error)?))
+        Ok((sender, requests::query_stream(&self.service, sent.map(Ok::<_, Infallible>), None)?))
     }
 }
 
@@ -405,7 +412,7 @@ impl<W: Way> Door for Http2<W> {
     }
 }
 
-impl<W: Way> Streams for Http2<W> {
+impl<W: Way> Watches for Http2<W> {
     async fn watch_contacts(&self, request: v1::WatchContactsRequest) -> Told<impl Contacts> {
         Ok(QueriesClient::new(self.channel.clone()).watch_contacts(request).await?.into_inner())
     }
@@ -413,7 +420,9 @@ impl<W: Way> Streams for Http2<W> {
     async fn watch_scene(&self, request: v1::WatchRequest) -> Told<impl Messages<v1::WatchResponse>> {
         Ok(ScenesClient::new(self.channel.clone()).watch(request).await?.into_inner())
     }
+}
 
+impl<W: Way> Streams for Http2<W> {
     async fn pose_stream(&self) -> Told<(Sent<v1::PoseStreamRequest>, impl Messages<v1::PoseStreamResponse>)> {
         let (sender, sent) = sending();
         Ok((sender, ScenesClient::new(self.channel.clone()).pose_stream(sent).await?.into_inner()))

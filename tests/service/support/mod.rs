@@ -1,5 +1,7 @@
 //! Doors to the daemon under test, and the messages that go through them.
 
+#[cfg(any(feature = "shared-memory", feature = "zenoh"))]
+pub mod by_name;
 pub mod certificates;
 pub mod daemon;
 pub mod door;
@@ -7,3 +9,5 @@ pub mod messages;
 #[cfg(feature = "shared-memory")]
 pub mod shared_memory_door;
 pub mod watchdog;
+#[cfg(feature = "zenoh")]
+pub mod zenoh_door;

@@ -4,6 +4,7 @@ mod answer;
 mod cast;
 mod cast_question;
 mod contact;
+mod error;
 mod geometry;
 mod health;
 mod mesh_card;
@@ -22,6 +23,7 @@ pub use cast_question::{
     cast_rays_request, cast_shapes_request, check_moving_pairs_request, nearest_bodies_request, overlap_request,
 };
 pub use contact::contact_messages;
+pub use error::{ErrorCard, query_error, reason_name};
 pub use geometry::{pose, shape};
 pub use health::scene_health;
 pub use mesh_card::mesh_card;
