@@ -98,7 +98,7 @@ impl Daemon {
         observers.extend(metrics.as_mut().map(observing::call_metrics));
         let service = Service::observed(&config.service, observers);
         let service = service.map_err(|error| StartError::Threads(error.to_string()))?;
-        let doors = Doors::open(config).await?;
+        let doors = Doors::open(config, &service).await?;
         doors.list().into_iter().for_each(|door| service.add_door(door));
         Ok(Self {
             service,
@@ -165,6 +165,7 @@ impl Daemon {
 impl Doors {
     async fn open(
         #[allow(unused_variables, reason = "there may be no door")] config: &Config,
+        #[allow(unused_variables, reason = "there may be no door that needs it")] service: &Arc<Service>,
     ) -> Result<Self, StartError> {
         Ok(Self {
             #[cfg(feature = "grpc")]
@@ -172,7 +173,7 @@ impl Doors {
             #[cfg(feature = "shared-memory")]
             shared_memory: shared_memory_door(config).await?,
             #[cfg(feature = "zenoh")]
-            zenoh: config.zenoh.open("zenoh", async |door| door.bind(&config.service.limits).await).await?,
+            zenoh: config.zenoh.open("zenoh", async |door| door.bind(service).await).await?,
         })
     }
 
@@ -207,7 +208,7 @@ impl Doors {
         }
         #[cfg(feature = "zenoh")]
         if let Some(zenoh) = self.zenoh {
-            let served = zenoh.serve(Arc::clone(&service), drained(told_to_drain.clone()));
+            let served = zenoh.serve(drained(told_to_drain.clone()));
             serving.spawn(async { served.await.map_err(|error| RunError::of("zenoh", &error)) });
         }
         if serving.is_empty() {

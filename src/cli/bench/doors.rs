@@ -121,9 +121,9 @@ pub(super) mod zenoh {
     /// Opens the door on a free port.
     pub fn serve(service: &Arc<Service>, runtime: &Handle) -> Result<String, Failed> {
         let config = Config::on_loopback(PREFIX);
-        let listening = runtime.block_on(config.bind(service.limits())).map_err(Failed::failure)?;
+        let listening = runtime.block_on(config.bind(service)).map_err(Failed::failure)?;
         let endpoint = listening.door().address;
-        runtime.spawn(listening.serve(Arc::clone(service), std::future::pending()));
+        runtime.spawn(listening.serve(std::future::pending()));
         Ok(endpoint)
     }
 

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use zenoh::Session;
 use zenoh::config::Locator;
+use zenoh::query::Queryable;
 
 use super::calls::Desk;
 use super::callers::token;
 use super::changes::Scenes;
 use super::config::{BadConfig, Config};
-use super::keys::Keys;
 use super::poses::Poses;
-use crate::limits::Limits;
 use crate::service::{Door, Service};
 
 /// What the door is called.
@@ -28,26 +27,33 @@ pub enum BindError {
     System(String),
 }
 
-/// An open door that nobody serves yet.
+/// An open door. Calls are answered already, and puts of poses wait: zenoh would not let anybody wait in front of it.
 #[derive(Debug)]
 pub struct Listening {
-    session: Session,
-    keys: Keys,
     address: String,
+    alive: String,
+    desk: Arc<Desk>,
+    // The order of the fields is the order in which they are closed.
+    calls: Queryable<()>,
+    poses: Poses,
+    session: Session,
 }
 
 impl Config {
-    /// Opens the door. Calls are answered from [`Listening::serve`] on.
+    /// Opens the door.
     ///
     /// # Errors
     /// [`BindError`].
-    pub async fn bind(&self, limits: &Limits) -> Result<Listening, BindError> {
-        let (keys, config) = (self.keys()?, self.of_zenoh(limits)?);
+    pub async fn bind(&self, service: &Arc<Service>) -> Result<Listening, BindError> {
+        let (keys, config) = (self.keys()?, self.of_zenoh(service.limits())?);
         let session = zenoh::open(config).await.map_err(system)?;
         let listens: Vec<String> = session.info().locators().await.iter().map(Locator::to_string).collect();
         let connects = self.connect.clone().unwrap_or_default();
         let address = if listens.is_empty() { connects } else { listens }.join(",");
-        Ok(Listening { session, keys, address })
+        let desk = Desk::new(&session, service, &keys).await.map_err(system)?;
+        let calls = desk.open(&session).await.map_err(system)?;
+        let poses = Poses::new(&session, &desk).await.map_err(system)?;
+        Ok(Listening { address, alive: keys.alive(), desk, calls, poses, session })
     }
 }
 
@@ -66,14 +72,11 @@ impl Listening {
     ///
     /// # Errors
     /// zenoh refuses a declaration.
-    pub async fn serve(self, service: Arc<Service>, drain: impl Future<Output = ()> + Send) -> Result<(), String> {
-        let Self { session, keys, .. } = self;
+    pub async fn serve(self, drain: impl Future<Output = ()> + Send) -> Result<(), String> {
+        let Self { alive, desk, calls, poses, session, .. } = self;
         let told = |error: zenoh::Error| error.to_string();
-        let desk = Desk::new(&session, &service, &keys).await.map_err(told)?;
-        let calls = desk.open(&session).await.map_err(told)?;
-        let poses = Poses::new(&session, &desk).await.map_err(told)?;
         let scenes = Scenes::new(&session, &desk);
-        let alive = token(&session, keys.alive()).await.map_err(told)?;
+        let alive = token(&session, alive).await.map_err(told)?;
         tokio::select! {
             () = async { tokio::join!(poses.run(), scenes.run()); } => return Err("the session was closed".to_owned()),
             () = drain => {}
