@@ -24,6 +24,7 @@ class Daemon:
         file = Path(self.folder.name) / "clearance.toml"
         file.write_text(configuration)
         command = [PROGRAM, "serve", "--config", str(file), "--grpc-address", address.replace("FOLDER", self.folder.name)]
+        command += ["--no-shared-memory", "--no-zenoh"]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.address = ""
 

@@ -9,13 +9,16 @@ import clearance
 from clearance.errors import translated
 from clearance.v1 import service_pb2 as service
 
-from .daemon import ROOT, DaemonTest
+from .daemon import ROOT, DaemonTest, ZenohTest
 
 RECORDS = ROOT / "tests" / "data" / "conformance" / "records.txt"
 
 
 class Conformance(DaemonTest):
     def test_the_recorded_answers_are_brought(self) -> None:
+        self.ask_all(self.client)
+
+    def ask_all(self, client: clearance.Client) -> None:
         seen: Counter[str] = Counter()
         for line in RECORDS.read_text().splitlines():
             if line.startswith("#"):
@@ -24,26 +27,32 @@ class Conformance(DaemonTest):
             seen[kind] += 1
             with self.subTest(line[:120]):
                 if kind == "asset":
-                    self.client.upload([(ROOT / first).read_bytes()])
+                    client.upload([(ROOT / first).read_bytes()])
                 elif kind == "ask":
-                    self.assertEqual(canonical(self.ask(first, rest[0])), rest[1])
+                    self.assertEqual(canonical(ask(client, first, rest[0])), rest[1])
                 elif kind == "refuse":
                     with self.assertRaises(clearance.ClearanceError) as caught, translated():
-                        self.ask(first, rest[0])
+                        ask(client, first, rest[0])
                     error = caught.exception
                     self.assertEqual(f"{error.code} {error.reason} {error.field or '-'}", rest[1])
                 else:
                     questions = [service.QueryStreamRequest.FromString(digits(text)) for text in rest[0].split(",")]
-                    answers = self.client._queries.QueryStream(iter(questions), timeout=30)
+                    answers = client._queries.QueryStream(iter(questions), timeout=30)
                     self.assertEqual(",".join(canonical(answer) for answer in answers), rest[1])
         self.assertEqual(set(seen), {"asset", "ask", "refuse", "stream"})
 
-    def ask(self, method: str, request: str) -> Message:
-        service_name, method_name = method.split("/")
-        described = service.DESCRIPTOR.services_by_name[service_name].methods_by_name[method_name]
-        sent = message_factory.GetMessageClass(described.input_type).FromString(digits(request))
-        stub = getattr(self.client, f"_{service_name.lower()}")
-        return getattr(stub, method_name)(sent, timeout=30)
+
+class ConformanceThroughZenoh(ZenohTest):
+    def test_the_recorded_answers_are_brought(self) -> None:
+        Conformance.ask_all(self, self.through_zenoh)
+
+
+def ask(client: clearance.Client, method: str, request: str) -> Message:
+    service_name, method_name = method.split("/")
+    described = service.DESCRIPTOR.services_by_name[service_name].methods_by_name[method_name]
+    sent = message_factory.GetMessageClass(described.input_type).FromString(digits(request))
+    stub = getattr(client, f"_{service_name.lower()}")
+    return getattr(stub, method_name)(sent, timeout=30)
 
 
 def digits(text: str) -> bytes:

@@ -23,7 +23,7 @@ class Examples(DaemonTest):
     @classmethod
     def setUpClass(cls) -> None:
         cls.folder = tempfile.TemporaryDirectory()
-        cls.DOORS = ["--shared-memory-name", DOOR, "--shared-memory-root", cls.folder.name]
+        cls.DOORS = ["--shared-memory-name", DOOR, "--shared-memory-root", cls.folder.name, "--zenoh-listen", "tcp/127.0.0.1:0"]
         super().setUpClass()
 
     @classmethod
@@ -39,10 +39,11 @@ class Examples(DaemonTest):
         return done.stdout
 
     def test_first_query_prints_what_that_of_every_client_prints(self) -> None:
-        command = [sys.executable, str(CLIENT / "examples" / "first_query.py"), self.address]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.stderr, "")
-        self.assertEqual(done.stdout, (ROOT / "tests" / "data" / "first_query.txt").read_text())
+        for address in (self.address, f"zenoh/{self.door('zenoh')}"):
+            command = [sys.executable, str(CLIENT / "examples" / "first_query.py"), address]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+            self.assertEqual(done.stderr, "")
+            self.assertEqual(done.stdout, (ROOT / "tests" / "data" / "first_query.txt").read_text())
 
     def test_a_path_that_is_free_and_one_that_is_blocked(self) -> None:
         free = self.run_example("straight_line_path.py", "--goal=1.57 -1.2 0 -1.57 -1.57 3.14")
@@ -61,6 +62,7 @@ class Examples(DaemonTest):
         blocks = re.findall(r"```python\n(.*?)```", page.read_text(), re.DOTALL)
         self.assertTrue(blocks)
         program = "\n".join([*blocks, ending]).replace("127.0.0.1:50551", self.address)
+        program = program.replace("tcp/127.0.0.1:50552", self.door("zenoh"))
         program = program.replace('shared_memory.Client("clearance")', f'shared_memory.Client("{DOOR}", "{self.folder.name}")')
         # The page loads `ur5.urdf` from the folder it is run in.
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, cwd=UR5)

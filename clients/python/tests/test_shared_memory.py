@@ -36,7 +36,7 @@ class SharedMemoryTest(unittest.TestCase):
         cls.root = tempfile.mkdtemp()
         cls.name = f"python-{os.getpid()}"
         command = [PROGRAM, "serve", "--grpc-address", "127.0.0.1:0", "--shared-memory-name", cls.name]
-        command += ["--shared-memory-root", cls.root, "--limit", "max_shared_memory_clients=2"]
+        command += ["--shared-memory-root", cls.root, "--limit", "max_shared_memory_clients=2", "--no-zenoh"]
         cls.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         address = cls.process.stdout.readline().split()[2]
         # The doors' lines come in the order of the doors; there may be one between these two.

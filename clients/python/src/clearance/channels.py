@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections import namedtuple
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import TYPE_CHECKING, Any, Callable, Optional
 
 import grpc
 
 from .robots import PathLike
+
+if TYPE_CHECKING:
+    from .zenoh_channel import ZenohChannel
+
+#: What addresses of zenoh begin with.
+_ZENOH = "zenoh/"
 
 _UNLIMITED = [("grpc.max_receive_message_length", -1), ("grpc.max_send_message_length", -1)]
 
@@ -46,6 +52,33 @@ def open_channel(
         # The text of a token has no place in an error.
         raise ValueError("the token is not printable ASCII")
     return grpc.intercept_channel(channel, _Bearer(token))
+
+
+def open_zenoh(
+    address: str,
+    *,
+    prefix: str,
+    config: Optional[PathLike],
+    token: Optional[str],
+    ca: Optional[PathLike],
+    certificate: Optional[PathLike],
+    key: Optional[PathLike],
+) -> Optional[ZenohChannel]:
+    """A session with zenoh if `address` is one of zenoh's."""
+    if not address.startswith(_ZENOH):
+        if config is not None:
+            raise ValueError(f"{address} does not begin with {_ZENOH}: zenoh_config has no meaning there")
+        return None
+    given = {"token": token, "ca": ca, "certificate": certificate, "key": key}
+    named = [name for name, value in given.items() if value is not None]
+    if named:
+        raise ValueError(f"through zenoh, {' and '.join(named)} cannot be given: zenoh_config says how to connect")
+    try:
+        from .zenoh_channel import ZenohChannel
+    except ImportError as error:
+        raise ImportError(f"{address} needs eclipse-zenoh: pip install './clients/python[zenoh]'") from error
+
+    return ZenohChannel(address.removeprefix(_ZENOH), prefix, config)
 
 
 def _target(address: str, has_tls: bool) -> tuple[str, bool]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from types import TracebackType
-from typing import Iterable, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import grpc
 import numpy as np
@@ -15,7 +15,7 @@ from .casts import CastItem, NearestItem, OverlapItem, RaysAnswer, cast_mode, ra
 from .contacts import ContactWatch
 from .edits import BodyName, body_ref
 from . import motions as motion_messages
-from .channels import open_channel
+from .channels import open_channel, open_zenoh
 from .errors import refused, translated
 from .motions import MotionsAnswer
 from .overlays import WhatIf
@@ -23,7 +23,7 @@ from .poses import Vector, vec3
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
 from .shapes import mesh_format, mesh_mode
-from .streams import PoseStream, SceneCopy, SceneWatch
+from .streams import PoseStream, SceneCopy, SceneWatch, poses_message
 from .v1 import cast_pb2 as cast
 from .v1 import contact_pb2 as contact
 from .v1 import geometry_pb2 as geometry
@@ -34,6 +34,10 @@ from .v1 import robot_pb2, scene_pb2
 from .v1 import service_pb2 as service
 from .v1 import stream_pb2 as stream
 from .v1.service_pb2_grpc import AssetsStub, QueriesStub, RobotsStub, ScenesStub, ServerStub
+
+if TYPE_CHECKING:
+    from .zenoh_channel import ZenohChannel
+    from .zenoh_scenes import PosesTold
 
 #: The port `clearance serve` listens on unless told otherwise.
 DEFAULT_ADDRESS = "127.0.0.1:50551"
@@ -65,15 +69,25 @@ class Client:
         ca: Optional[PathLike] = None,
         certificate: Optional[PathLike] = None,
         key: Optional[PathLike] = None,
+        zenoh_prefix: str = "clearance",
+        zenoh_config: Optional[PathLike] = None,
     ):
-        """`address` is `HOST:PORT`, `http://HOST:PORT`, `https://HOST:PORT` or `unix:PATH`.
+        """`address` is `HOST:PORT`, `http://HOST:PORT`, `https://HOST:PORT` or `unix:PATH`; through zenoh it is
+        `zenoh/ENDPOINT`, for example `zenoh/tcp/127.0.0.1:50552`.
 
         `timeout`, in seconds, counts for every call that does not bring its own. `token` goes with every call.
         `ca` is a file (PEM) of certificates of which one must have signed the daemon's; without it those that gRPC
         brings along are trusted. `certificate` and `key` are files (PEM) of the client's own. A bare `HOST:PORT` means
         TLS if any of these three is given.
+
+        Through zenoh these four are refused. `zenoh_config` is a file (JSON5) of zenoh's own configuration, for TLS,
+        certificates and passwords; the endpoint is put into it, and scouting is off. `zenoh_prefix` is the daemon's. The
+        connection is made at once, by zenoh itself again when it is lost, and what has no timeout ends after the daemon's
+        `max_deadline_seconds` (600 unless told otherwise).
         """
-        self._channel = open_channel(address, token=token, ca=ca, certificate=certificate, key=key)
+        shown = {"token": token, "ca": ca, "certificate": certificate, "key": key}
+        self._zenoh = open_zenoh(address, prefix=zenoh_prefix, config=zenoh_config, **shown)
+        self._channel = self._zenoh or open_channel(address, **shown)
         self._timeout = timeout
         self._scenes = ScenesStub(self._channel)
         self._assets = AssetsStub(self._channel)
@@ -584,7 +598,7 @@ class Scene:
 
         The first step has every contact as begun. With a `margin` a pair is in contact when it is proved to be within it
         (a scene's entry for the pair replaces it), without when it is proved to touch. `stays` lists what stays, too.
-        `timeout` ends the watch after so many seconds; None: never.
+        `timeout` ends the watch after so many seconds; None: never, through zenoh as late as the daemon allows.
         """
         touching, within = contact.CONTACT_THRESHOLD_TOUCHING, contact.CONTACT_THRESHOLD_MARGIN
         request = contact.WatchContactsRequest(
@@ -605,7 +619,8 @@ class Scene:
         """What changes in the scene, revision by revision, for as long as it is iterated; `copy` of the watch follows.
 
         A `copy` of an earlier watch is gone on with; without one the first step tells the whole content. With `shapes` the
-        shapes of bodies are told, too. `timeout` ends the watch after so many seconds; None: never.
+        shapes of bodies are told, too. `timeout` ends the watch after so many seconds; None: never, through zenoh as late as
+        the daemon allows. Many watchers of one scene are better served by :meth:`follow`.
         """
         request = stream.WatchRequest(scene=self.name, shapes=shapes)
         if copy is not None:
@@ -621,6 +636,48 @@ class Scene:
         first = stream.PoseStreamRequest(scene=self.name, interval=interval)
         with translated():
             return PoseStream(lambda sent: self._client._scenes.PoseStream(sent, timeout=timeout), first)
+
+    def follow(self, *, copy: Optional[SceneCopy] = None) -> SceneWatch:
+        """As :meth:`watch` with shapes, through zenoh, of what the daemon tells all who follow the scene: told once, however
+        many they are.
+
+        What got lost on the way is asked for. A daemon that is away, or not reached, is waited for; when the scene has begun
+        another life meanwhile, the copy begins anew. A scene that is deleted is an error.
+        """
+        channel = self._through_zenoh("follow", "watch")
+        from .zenoh_scenes import Following
+
+        with translated():
+            return SceneWatch(Following(channel, self.name, copy), copy)
+
+    def put_poses(
+        self,
+        bodies: Optional[Mapping[BodyName, geometry.Pose]] = None,
+        robots: Optional[Mapping[str, geometry.Pose]] = None,
+    ) -> None:
+        """Poses of bodies, by name or id, and of robots' bases, by name: in the world, metres. Through zenoh only.
+
+        All of them are made in one revision, or overtaken by newer poses of the same bodies. Waits only where the connection
+        is full; what became of them is told by :meth:`poses_told`.
+        """
+        self._through_zenoh("put_poses", "pose_stream").put(
+            self.name, "poses", poses_message(bodies, robots).SerializeToString()
+        )
+
+    def poses_told(self) -> PosesTold:
+        """What becomes of poses that anybody puts for this scene from now on. Through zenoh only.
+
+        `messages` counts those of all who put, since poses began to come after ten seconds without any.
+        """
+        channel = self._through_zenoh("poses_told", "pose_stream")
+        from .zenoh_scenes import PosesTold
+
+        return PosesTold(channel, self.name)
+
+    def _through_zenoh(self, method: str, instead: str) -> ZenohChannel:
+        if self._client._zenoh is None:
+            raise ValueError(f"{method} needs an address that begins with zenoh/; through gRPC there is {instead}")
+        return self._client._zenoh
 
     def stream_states(
         self,

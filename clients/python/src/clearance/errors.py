@@ -91,12 +91,23 @@ _KINDS: dict[grpc.StatusCode, type[ClearanceError]] = {
 _BY_NUMBER: dict[int, grpc.StatusCode] = {code.value[0]: code for code in grpc.StatusCode}
 
 
+def code_of(error: service.QueryError) -> grpc.StatusCode:
+    """gRPC's name of the kind of error."""
+    return _BY_NUMBER.get(error.code, grpc.StatusCode.UNKNOWN)
+
+
+def details_of(error: service.QueryError) -> dict[str, str]:
+    """What a call's trailing metadata would have had."""
+    if not error.reason:
+        return dict(error.details)
+    reason = service.ErrorReason.Name(error.reason).removeprefix("ERROR_REASON_")
+    return {**error.details, "clearance-reason": reason}
+
+
 def refused(error: service.QueryError) -> ClearanceError:
     """The error of one question of a stream: as a call of its own would have raised."""
-    code = _BY_NUMBER.get(error.code, grpc.StatusCode.UNKNOWN)
-    reason = service.ErrorReason.Name(error.reason).removeprefix("ERROR_REASON_")
-    details = {**error.details, "clearance-reason": reason}
-    return _KINDS.get(code, ClearanceError)(code.name, f"{code.name}: {error.message}", details)
+    code = code_of(error)
+    return _KINDS.get(code, ClearanceError)(code.name, f"{code.name}: {error.message}", details_of(error))
 
 
 @contextmanager

@@ -168,6 +168,20 @@ class PosesMade:
     #: Which message, from 0, which field of it, and what is wrong with it.
     refused: tuple[tuple[int, str, str], ...]
 
+    @classmethod
+    def of(cls, made: messages.PoseStreamResponse) -> PosesMade:
+        refused = tuple((one.message, one.field, one.problem) for one in made.refused)
+        return cls(made.epoch, made.revision, made.messages, made.poses, made.overtaken, refused)
+
+
+def poses_message(
+    bodies: Optional[Mapping[BodyName, geometry.Pose]], robots: Optional[Mapping[str, geometry.Pose]]
+) -> messages.PoseStreamRequest:
+    """Poses of bodies, by name or id, and of robots' bases, by name."""
+    moved = [messages.BodyPose(body=body_ref(name), pose=pose) for name, pose in (bodies or {}).items()]
+    stand = [messages.RobotPose(robot=name, base=pose) for name, pose in (robots or {}).items()]
+    return messages.PoseStreamRequest(bodies=moved, robots=stand)
+
 
 class PoseStream(_Stream[messages.PoseStreamResponse]):
     """Poses at a high rate: :meth:`send` them, and iterate over what became of them. :meth:`finish`, or leave the `with` block, when done."""
@@ -183,9 +197,7 @@ class PoseStream(_Stream[messages.PoseStreamResponse]):
         robots: Optional[Mapping[str, geometry.Pose]] = None,
     ) -> None:
         """Poses of bodies, by name or id, and of robots' bases, by name: in the world, metres. Does not wait."""
-        moved = [messages.BodyPose(body=body_ref(name), pose=pose) for name, pose in (bodies or {}).items()]
-        stand = [messages.RobotPose(robot=name, base=pose) for name, pose in (robots or {}).items()]
-        self._queue.put(messages.PoseStreamRequest(bodies=moved, robots=stand))
+        self._queue.put(poses_message(bodies, robots))
 
     def finish(self) -> None:
         """No more poses will be sent; the iteration ends once all that were sent are told of."""
@@ -203,6 +215,4 @@ class PoseStream(_Stream[messages.PoseStreamResponse]):
         return self
 
     def __next__(self) -> PosesMade:
-        made = self._next_message()
-        refused = tuple((one.message, one.field, one.problem) for one in made.refused)
-        return PosesMade(made.epoch, made.revision, made.messages, made.poses, made.overtaken, refused)
+        return PosesMade.of(self._next_message())
