@@ -16,3 +16,5 @@ mod streams;
 mod support;
 mod watching;
 mod web;
+#[cfg(feature = "zenoh")]
+mod zenoh;

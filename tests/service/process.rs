@@ -46,8 +46,13 @@ impl Drop for Killed {
 }
 
 impl Killed {
-    /// A daemon, and where it says that it listens.
+    /// A daemon, and where it says that gRPC listens.
     pub async fn listening(command: &mut Command) -> (Self, String) {
+        Self::listening_at(command, "grpc").await
+    }
+
+    /// A daemon, and where it says that a door is.
+    pub async fn listening_at(command: &mut Command, door: &str) -> (Self, String) {
         let mut child = command.spawn().unwrap();
         let (stdout, mut stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
         let log = std::thread::spawn(move || {
@@ -56,15 +61,17 @@ impl Killed {
             text
         });
         let child = Self { child, log: Some(log) };
-        let (sender, first) = tokio::sync::oneshot::channel();
+        let (sender, told) = tokio::sync::oneshot::channel();
+        let begins = format!("listening {door} ");
         // It is read to its end: a daemon that cannot say where its other doors are does not begin.
         std::thread::spawn(move || {
-            let mut lines = BufReader::new(stdout).lines();
-            sender.send(lines.next().unwrap().unwrap()).unwrap();
+            let mut lines = BufReader::new(stdout).lines().map_while(Result::ok);
+            let line = lines.find(|line| line.starts_with(&begins));
+            // Without a line the receiver finds nobody who sends.
+            drop(line.map(|line| sender.send(line[begins.len()..].to_owned())));
             lines.for_each(drop);
         });
-        let line = watched("the first line", first).await.unwrap();
-        let address = line.strip_prefix("listening grpc ").unwrap_or_else(|| panic!("{line:?}")).to_owned();
+        let address = watched("where it listens", told).await.unwrap_or_else(|_| panic!("no line of the {door} door"));
         (child, address)
     }
 

@@ -171,7 +171,9 @@ impl Soak {
                     panic!("{error} after {} rounds", self.done.shared.load(Ordering::Relaxed))
                 });
                 let t2 = t0.elapsed();
-                if self.done.shared.load(Ordering::Relaxed) % 20 == 0 { println!("T {:?} {:?}", t1, t2); }
+                if self.done.shared.load(Ordering::Relaxed) % 20 == 0 {
+                    println!("T {:?} {:?}", t1, t2);
+                }
                 count(&self.done.shared);
             }
         }

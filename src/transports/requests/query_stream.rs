@@ -16,9 +16,9 @@ use super::{
 };
 use crate::limits::LimitExceeded;
 use crate::service::{Asker, Call, Permit, Rpc, Service, ServiceError};
-use crate::transports::wire::{to_proto, v1};
 use crate::transports::wire::v1::query_stream_request::Question;
 use crate::transports::wire::v1::query_stream_response::Outcome;
+use crate::transports::wire::{to_proto, v1};
 
 /// A stream of questions that is under way. Dropping it stops the work on them.
 #[derive(Debug)]

@@ -176,7 +176,12 @@ struct Replies<'a> {
 }
 
 impl Replies<'_> {
-    async fn answered(&self, selected: &Selected, call: &Call, bytes: usize) -> std::result::Result<Ended, ServiceError> {
+    async fn answered(
+        &self,
+        selected: &Selected,
+        call: &Call,
+        bytes: usize,
+    ) -> std::result::Result<Ended, ServiceError> {
         let limits = self.desk.service.limits();
         LimitExceeded::check("max_message_bytes", bytes, limits.max_message_bytes)?;
         let longest = Duration::from_secs(limits.max_deadline_seconds as u64);
@@ -192,7 +197,12 @@ impl Replies<'_> {
         }
     }
 
-    async fn told(&self, selected: &Selected, message: Bytes, timeout: Option<Duration>) -> std::result::Result<Ended, ServiceError> {
+    async fn told(
+        &self,
+        selected: &Selected,
+        message: Bytes,
+        timeout: Option<Duration>,
+    ) -> std::result::Result<Ended, ServiceError> {
         let service = &self.desk.service;
         if let Some(steps) = requests::steps(service, &selected.rpc, message.clone(), timeout).await? {
             return self.step_by_step(steps, selected.steps).await;
@@ -222,7 +232,11 @@ impl Replies<'_> {
         self.desk.sent(message.len());
         let is_small = message.len() <= SMALL_REPLY;
         let reply = || {
-            self.query.reply(self.query.key_expr(), message).encoding(Encoding::APPLICATION_PROTOBUF).express(true).wait()
+            self.query
+                .reply(self.query.key_expr(), message)
+                .encoding(Encoding::APPLICATION_PROTOBUF)
+                .express(true)
+                .wait()
         };
         told(if is_small { reply() } else { tokio::task::block_in_place(reply) });
     }

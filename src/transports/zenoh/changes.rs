@@ -91,7 +91,8 @@ impl Scenes {
                 .sample_miss_detection(MissDetectionConfig::default().sporadic_heartbeat(HEARTBEAT))
                 .publisher_detection()
                 .await?;
-            let publication = Publication { desk: Arc::clone(&self.desk), scene: name.clone(), epoch: scene.epoch, publisher };
+            let publication =
+                Publication { desk: Arc::clone(&self.desk), scene: name.clone(), epoch: scene.epoch, publisher };
             let publication = self.publications.spawn(publication.run());
             let _token = token(&self.session, keys.scene_alive(&name)).await?;
             self.by_name.insert(name, Told { epoch: scene.epoch, publication, _token });

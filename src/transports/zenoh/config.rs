@@ -118,7 +118,11 @@ impl Config {
         tell(&mut config, "scouting/gossip/enabled", json!(self.scouting))?;
         if self.file.is_none() {
             tell(&mut config, "mode", json!("peer"))?;
-            tell(&mut config, "connect/retry", json!({"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}))?;
+            tell(
+                &mut config,
+                "connect/retry",
+                json!({"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}),
+            )?;
         }
         tell(&mut config, "transport/link/rx/max_message_size", json!(limits.max_message_bytes + MESSAGE_HEAD))?;
         tell(&mut config, "transport/unicast/max_sessions", json!(limits.max_connections))?;
@@ -217,7 +221,11 @@ mod tests {
     fn the_file_says_what_flags_do_not() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("zenoh.json5");
-        std::fs::write(&file, "{ listen: { endpoints: ['tcp/127.0.0.1:7'] }, scouting: { multicast: { enabled: true } } }").unwrap();
+        std::fs::write(
+            &file,
+            "{ listen: { endpoints: ['tcp/127.0.0.1:7'] }, scouting: { multicast: { enabled: true } } }",
+        )
+        .unwrap();
         let of = |listen| told(&Config { listen, file: Some(file.clone()), ..config() }).unwrap();
         assert_eq!(texts(&read(&of(None), "listen/endpoints")), ["tcp/127.0.0.1:7"]);
         assert_eq!(texts(&read(&of(Some(Vec::new())), "listen/endpoints")), Vec::<String>::new());
@@ -230,7 +238,9 @@ mod tests {
     #[test]
     fn strangers_stay_outside() {
         let listen = |endpoint: &str| told(&Config { listen: Some(vec![endpoint.to_owned()]), ..config() });
-        for local in ["tcp/127.0.0.1:1", "tcp/[::1]:1", "tcp/localhost:1", "unixsock-stream//run/z", "tcp/127.0.0.1:1#iface=lo"] {
+        for local in
+            ["tcp/127.0.0.1:1", "tcp/[::1]:1", "tcp/localhost:1", "unixsock-stream//run/z", "tcp/127.0.0.1:1#iface=lo"]
+        {
             assert!(listen(local).is_ok(), "{local}");
         }
         for open in ["tcp/0.0.0.0:1", "tcp/[::]:1", "tls/0.0.0.0:1", "tcp/127.0.0.1.example.com:1", "tcp/10.0.0.1:1"] {

@@ -6,8 +6,8 @@ use zenoh::Session;
 use zenoh::config::Locator;
 use zenoh::query::Queryable;
 
-use super::calls::Desk;
 use super::callers::token;
+use super::calls::Desk;
 use super::changes::Scenes;
 use super::config::{BadConfig, Config};
 use super::poses::Poses;

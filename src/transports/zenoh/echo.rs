@@ -50,7 +50,8 @@ fn open(config: Configuration) -> Result<Session, EchoError> {
 impl Echo for ZenohEcho {
     fn exchange(&mut self, parcel: &Parcel) -> Result<(), EchoError> {
         let query = self.client.get(KEY).payload(parcel.bytes()).timeout(PATIENCE).express(true);
-        let query = query.consolidation(ConsolidationMode::None).congestion_control(zenoh::qos::CongestionControl::Block);
+        let query =
+            query.consolidation(ConsolidationMode::None).congestion_control(zenoh::qos::CongestionControl::Block);
         let replies = query.wait().map_err(EchoError::of("zenoh"))?;
         let reply = replies.recv().map_err(EchoError::of("zenoh"))?.into_result().map_err(EchoError::of("zenoh"))?;
         self.came = reply.payload().len();

@@ -52,7 +52,11 @@ impl Keys {
     pub fn new(prefix: &str) -> Result<Self, BadPrefix> {
         let bad = || BadPrefix { prefix: prefix.to_owned() };
         let key = OwnedKeyExpr::new(prefix.to_owned()).map_err(|_| bad())?;
-        if key.is_wild() || prefix.contains(['%', '@']) { Err(bad()) } else { Ok(Self { root: format!("{prefix}/{VERSION}") }) }
+        if key.is_wild() || prefix.contains(['%', '@']) {
+            Err(bad())
+        } else {
+            Ok(Self { root: format!("{prefix}/{VERSION}") })
+        }
     }
 
     /// The prefix they begin with.

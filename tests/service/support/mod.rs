@@ -6,6 +6,7 @@ pub mod certificates;
 pub mod daemon;
 pub mod door;
 pub mod messages;
+pub mod network;
 #[cfg(feature = "shared-memory")]
 pub mod shared_memory_door;
 pub mod watchdog;
