@@ -51,7 +51,7 @@ impl Client {
             .recovery(RecoveryConfig::default().heartbeat())
             .await
             .map_err(system)?;
-        let alive = self.session().liveliness().declare_subscriber(self.keys().alive());
+        let alive = self.session().liveliness().declare_subscriber(self.keys().alive()).history(true);
         let alive = alive.with(FifoChannel::new(WAITING)).await.map_err(system)?;
         Ok(Follower {
             client: self,

@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_by_its_name() {
-        let of = |parameters| read("clearance/v1/call/Queries/Collide", parameters).unwrap_err();
+        let of = |parameters: &str| read("clearance/v1/call/Queries/Collide", parameters).unwrap_err();
         for bad in ["timeout=", "timeout=nan", "timeout=-1", "timeout=0", "timeout=1e300", "timeout=x"] {
             assert_eq!(of(bad), "parameters.timeout: is no number of seconds greater than 0", "{bad}");
         }
