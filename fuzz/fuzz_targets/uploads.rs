@@ -30,7 +30,8 @@ fuzz_target!(|bytes: &[u8]| {
     let Some((size, file)) = bytes.split_first() else { return };
     let header = v1::AssetHeader { sha256: ContentHash::of(file).to_string(), bytes: file.len() as u64 };
     let parts = std::iter::once(v1::put_asset_request::Part::Header(header)).chain(
-        file.chunks(usize::from(*size).max(1)).map(|chunk| v1::put_asset_request::Part::Chunk(Bytes::copy_from_slice(chunk))),
+        file.chunks(usize::from(*size).max(1))
+            .map(|chunk| v1::put_asset_request::Part::Chunk(Bytes::copy_from_slice(chunk))),
     );
     let message = parts.flat_map(|part| v1::PutAssetRequest { part: Some(part) }.encode_length_delimited_to_vec());
     match put(message.collect()) {

@@ -17,6 +17,7 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 pub struct Daemon {
     child: Child,
     pub grpc: String,
+    pub zenoh: String,
     pub metrics: String,
     log: Option<JoinHandle<String>>,
 }
@@ -43,11 +44,13 @@ impl Daemon {
             stderr.read_to_string(&mut text).unwrap();
             text
         });
-        let mut daemon = Self { child, grpc: String::new(), metrics: String::new(), log: Some(log) };
+        let mut daemon =
+            Self { child, grpc: String::new(), zenoh: String::new(), metrics: String::new(), log: Some(log) };
         for line in BufReader::new(stdout).lines() {
             let line = line.unwrap();
             match line.strip_prefix("listening ").and_then(|line| line.split_once(' ')) {
                 Some(("grpc", address)) => daemon.grpc = address.to_owned(),
+                Some(("zenoh", endpoint)) => daemon.zenoh = endpoint.to_owned(),
                 Some(("metrics", address)) => {
                     daemon.metrics = address.to_owned();
                     return daemon;

@@ -1,5 +1,6 @@
 //! What is asked is counted, where it was asked and with what came out; the endpoint is opened as configured, and no further.
 
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use clearance::transports::wire::v1;
@@ -199,32 +200,51 @@ fn questions_through_shared_memory_are_counted_under_their_own_door() {
     use prost::Message;
     let folder = tempfile::tempdir().unwrap();
     let name = format!("operations-{}", std::process::id());
-    let mut command = serve();
     let root = folder.path().join("root");
-    // The flag that `serve()` sets is taken back by a command of its own.
-    command = {
-        let mut own = std::process::Command::new(command.get_program());
-        own.args(["serve", "--grpc-address", "127.0.0.1:0", "--metrics-address", "127.0.0.1:0"]);
-        own.args(["--shared-memory-name", &name, "--shared-memory-root"]).arg(&root);
-        own.args(["--limit", "max_shared_memory_clients=2", "--limit", "max_shared_memory_request_bytes=1048576"]);
-        own.args(["--limit", "max_shared_memory_response_bytes=1048576"]);
-        own.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped());
-        own
-    };
+    let mut command = Command::new(serve().get_program());
+    command.args(["serve", "--grpc-address", "127.0.0.1:0", "--metrics-address", "127.0.0.1:0", "--no-zenoh"]);
+    command.args(["--shared-memory-name", &name, "--shared-memory-root"]).arg(&root);
+    command.args(["--limit", "max_shared_memory_clients=2", "--limit", "max_shared_memory_request_bytes=1048576"]);
+    command.args(["--limit", "max_shared_memory_response_bytes=1048576"]);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let daemon = Daemon::run(&mut command);
     let mut client = Client::connect(&name, &root).unwrap();
     let patience = Duration::from_secs(30);
     let create = v1::CreateSceneRequest { name: "cell".to_owned(), ..v1::CreateSceneRequest::default() };
     client.call("Scenes/CreateScene", &create.encode_to_vec(), patience).unwrap();
     client.call("Queries/Collide", &collide("nowhere", &["a"]).encode_to_vec(), patience).unwrap_err();
-    let scrape = Scrape::of(&daemon);
-    for (rpc, outcome) in [("CreateScene", "ok"), ("Collide", "not_found")] {
-        let labels = format!("{{door=\"shared-memory\",rpc=\"{rpc}\",outcome=\"{outcome}\"}}");
-        assert_eq!(scrape.value(&format!("clearance_call_duration_seconds_count{labels}")), 1.0);
-    }
-    assert!(scrape.value("clearance_received_bytes_total{door=\"shared-memory\"}") > 0.0);
+    counted(&daemon, "shared-memory");
     drop(client);
     assert_eq!(daemon.stop().0, Some(0));
+}
+
+/// A scene was made and a scene was not found, through that door alone.
+fn counted(daemon: &Daemon, door: &str) {
+    let scrape = Scrape::of(daemon);
+    for (rpc, outcome) in [("CreateScene", "ok"), ("Collide", "not_found")] {
+        let labels = format!("{{door=\"{door}\",rpc=\"{rpc}\",outcome=\"{outcome}\"}}");
+        assert_eq!(scrape.value(&format!("clearance_call_duration_seconds_count{labels}")), 1.0);
+    }
+    assert!(scrape.value(&format!("clearance_received_bytes_total{{door=\"{door}\"}}")) > 0.0);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn questions_through_zenoh_are_counted_under_their_own_door() {
+    use clearance::transports::zenoh::Client;
+    use prost::Message;
+    let mut command = Command::new(serve().get_program());
+    command.args(["serve", "--grpc-address", "127.0.0.1:0", "--metrics-address", "127.0.0.1:0"]);
+    command.args(["--no-shared-memory", "--zenoh-listen", "tcp/127.0.0.1:0"]);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let daemon = tokio::task::block_in_place(|| Daemon::run(&mut command));
+    let client = Client::connect(&daemon.zenoh, "clearance").await.unwrap();
+    let patience = Duration::from_secs(30);
+    let create = v1::CreateSceneRequest { name: "cell".to_owned(), ..v1::CreateSceneRequest::default() };
+    client.call("Scenes/CreateScene", create.encode_to_vec(), patience).await.unwrap();
+    client.call("Queries/Collide", collide("nowhere", &["a"]).encode_to_vec(), patience).await.unwrap_err();
+    tokio::task::block_in_place(|| counted(&daemon, "zenoh"));
+    drop(client);
+    assert_eq!(tokio::task::block_in_place(|| daemon.stop()).0, Some(0));
 }
 
 /// How a run ends that does not begin to serve, and what it says.

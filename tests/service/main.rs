@@ -10,7 +10,7 @@ mod histories;
 mod process;
 #[cfg(feature = "shared-memory")]
 mod shared_memory;
-#[cfg(feature = "shared-memory")]
+#[cfg(all(feature = "shared-memory", feature = "zenoh"))]
 mod soak;
 mod streams;
 mod support;

@@ -14,6 +14,7 @@ use clearance::transports::wire::v1::queries_client::QueriesClient;
 use clearance::transports::wire::v1::query_stream_request::Question;
 use clearance::transports::wire::v1::robots_client::RobotsClient;
 use clearance::transports::wire::v1::scenes_client::ScenesClient;
+use clearance::transports::wire::v1::server_client::ServerClient;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 use tokio_stream::StreamExt;
@@ -29,7 +30,7 @@ const GROWTH: f64 = 0.05;
 const SLACK: u64 = 4096;
 
 /// What each kind of client has done.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Done {
     questions: AtomicU64,
     edits: AtomicU64,
@@ -38,7 +39,10 @@ struct Done {
     watched: AtomicU64,
     posed: AtomicU64,
     shared: AtomicU64,
+    visited: AtomicU64,
     rude: AtomicU64,
+    /// Of what went through shared memory: the longest two calls, microseconds.
+    slowest: AtomicU64,
 }
 
 fn count(counter: &AtomicU64) {
@@ -48,6 +52,8 @@ fn count(counter: &AtomicU64) {
 #[derive(Clone)]
 struct Soak {
     address: String,
+    /// Where zenoh's door is.
+    zenoh: String,
     name: String,
     root: PathBuf,
     end: Instant,
@@ -120,8 +126,11 @@ impl Soak {
             let request = v1::WatchRequest { scene: SCENE.to_owned(), shapes: true, ..v1::WatchRequest::default() };
             let mut steps = scenes.watch(request).await.unwrap().into_inner();
             for _ in 0..20 {
-                steps.message().await.unwrap();
-                count(&self.done.watched);
+                // Nothing changes once the others have ended.
+                if let Ok(step) = tokio::time::timeout(Duration::from_secs(5), steps.message()).await {
+                    step.unwrap();
+                    count(&self.done.watched);
+                }
             }
         }
     }
@@ -159,22 +168,37 @@ impl Soak {
         while self.goes_on() {
             let mut client = Client::connect(&self.name, &self.root).unwrap();
             for _ in 0..200 {
-                let t0 = Instant::now();
+                let begun = Instant::now();
                 let answer = client.ask(&target, Ask::States(&question, 2), &Options::default());
-                answer.unwrap_or_else(|error| {
-                    panic!("{error} after {} rounds", self.done.shared.load(Ordering::Relaxed))
-                });
-                let t1 = t0.elapsed();
-                let t0 = Instant::now();
+                answer.unwrap_or_else(|error| panic!("{error} after {:?}", self.done));
                 let scenes = client.call("Scenes/ListScenes", &[], Duration::from_secs(10));
-                scenes.unwrap_or_else(|error| {
-                    panic!("{error} after {} rounds", self.done.shared.load(Ordering::Relaxed))
-                });
-                let t2 = t0.elapsed();
-                if self.done.shared.load(Ordering::Relaxed) % 20 == 0 {
-                    println!("T {:?} {:?}", t1, t2);
-                }
+                scenes.unwrap_or_else(|error| panic!("{error} after {:?}", self.done));
+                let took = u64::try_from(begun.elapsed().as_micros()).unwrap();
+                self.done.slowest.fetch_max(took, Ordering::Relaxed);
                 count(&self.done.shared);
+            }
+        }
+    }
+
+    /// Through zenoh: questions, poses, watches that are left; connects anew every now and then.
+    async fn visitor(self) {
+        use clearance::geometry::{Pose, Quaternion, Vec3};
+        use clearance::transports::zenoh::{Client, Of};
+        use prost::Message as _;
+        let patience = Duration::from_secs(10);
+        let question = states([0.3, -0.4].repeat(64)).encode_to_vec();
+        let watch = v1::WatchRequest { scene: SCENE.to_owned(), ..v1::WatchRequest::default() }.encode_to_vec();
+        while self.goes_on() {
+            let client = Client::connect(&self.zenoh, "clearance").await.unwrap();
+            let mut follower = client.follow(SCENE).await.unwrap();
+            for i in 0..100 {
+                client.call("Queries/CheckStates", question.clone(), patience).await.unwrap();
+                let pose = Pose::new(Vec3::new(2.0, 0.001 * f64::from(i), -1.0), Quaternion::IDENTITY).unwrap();
+                client.put_pose(SCENE, &Of::Body("block".to_owned()), &pose).await.unwrap();
+                let mut left = client.watch("Scenes/Watch", watch.clone(), patience, None).await.unwrap();
+                left.next().await.unwrap();
+                follower.next().await.unwrap();
+                count(&self.done.visited);
             }
         }
     }
@@ -218,6 +242,7 @@ async fn memory_stays_flat_under_mixed_clients() {
     let (name, root) = (unused_name(), tempfile::tempdir().unwrap());
     let mut command = serve_with(&["--shared-memory-name", &name, "--limit", "max_shared_memory_clients=2"]);
     command.arg("--shared-memory-root").arg(root.path());
+    command.args(["--zenoh-listen", "tcp/127.0.0.1:0"]);
     let (daemon, address) = Killed::listening(&mut command).await;
     let mut scenes = ScenesClient::connect(format!("http://{address}")).await.unwrap();
     let mut robots = RobotsClient::connect(format!("http://{address}")).await.unwrap();
@@ -229,8 +254,12 @@ async fn memory_stays_flat_under_mixed_clients() {
     let edits = [add_robot("arm", &robot.id), block].into_iter().chain(others).collect();
     scenes.apply(apply(edits)).await.unwrap();
 
+    let mut server = ServerClient::connect(format!("http://{address}")).await.unwrap();
+    let doors = server.get_server_info(v1::GetServerInfoRequest {}).await.unwrap().into_inner().doors;
+    let zenoh = doors.iter().find(|door| door.kind == "zenoh").map_or("", |door| &door.address).to_owned();
     let soak = Soak {
         address,
+        zenoh,
         name: name.to_string(),
         root: root.path().to_owned(),
         end: Instant::now() + Duration::from_secs(seconds),
@@ -248,13 +277,14 @@ async fn memory_stays_flat_under_mixed_clients() {
     };
     let neighbour = soak.clone();
     let neighbour = tokio::task::spawn_blocking(move || neighbour.neighbour());
-    let clients = [
+    let clients = vec![
         tokio::spawn(soak.clone().planner()),
         tokio::spawn(soak.clone().builder()),
         tokio::spawn(soak.clone().streamer()),
         tokio::spawn(soak.clone().watcher()),
         tokio::spawn(soak.clone().poser()),
         tokio::spawn(soak.clone().lout()),
+        tokio::spawn(soak.clone().visitor()),
         neighbour,
         measuring,
     ];
@@ -265,13 +295,13 @@ async fn memory_stays_flat_under_mixed_clients() {
     let (code, log) = daemon.stopped().await;
     assert_eq!(code, Some(0), "{log}");
 
-    let Done { questions, edits, scenes, streamed, watched, posed, shared, rude } = &*soak.done;
-    let done =
-        [questions, edits, scenes, streamed, watched, posed, shared, rude].map(|done| done.load(Ordering::Relaxed));
+    let Done { questions, edits, scenes, streamed, watched, posed, shared, visited, rude, slowest: _ } = &*soak.done;
+    let done = [questions, edits, scenes, streamed, watched, posed, shared, visited, rude];
+    let done = done.map(|done| done.load(Ordering::Relaxed));
     assert!(done.iter().all(|done| *done > 5), "every kind of client has done something: {done:?}");
     let sizes = sizes.lock().unwrap();
     let third = sizes.len() / 3;
     let (before, after) = (median(&sizes[third..2 * third]), median(&sizes[2 * third..]));
-    println!("{done:?} done; {before} kB, then {after} kB");
+    println!("{:?} done; {before} kB, then {after} kB", soak.done);
     assert!(after as f64 <= before as f64 * (1.0 + GROWTH) + SLACK as f64, "{before} kB, then {after} kB: {sizes:?}");
 }

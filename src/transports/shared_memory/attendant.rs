@@ -7,8 +7,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use iceoryx2::active_request::ActiveRequest;
-use iceoryx2::port::LoanError;
 use iceoryx2::port::notifier::Notifier;
+use iceoryx2::port::{LoanError, ReceiveError};
 use iceoryx2::prelude::CallbackProgression;
 use tokio::runtime::Handle;
 
@@ -59,6 +59,10 @@ struct Desk {
     traffic: Arc<Traffic>,
     answered: Arc<Notifier<Ipc>>,
     handed_over: AtomicUsize,
+    /// Wakes the attendant.
+    attendant: Arc<Notifier<Ipc>>,
+    /// The attendant was told of a request that it cannot see yet.
+    looked_in_vain: AtomicBool,
 }
 
 /// To whom an answer goes.
@@ -76,8 +80,14 @@ impl Attendant {
         spin: Duration,
         draining: Arc<AtomicBool>,
     ) -> Self {
-        let (traffic, answered) = (service.traffic(DOOR), Arc::clone(&ports.answered));
-        let desk = Desk { service, traffic, answered, handed_over: AtomicUsize::new(0) };
+        let desk = Desk {
+            traffic: service.traffic(DOOR),
+            service,
+            answered: Arc::clone(&ports.answered),
+            handed_over: AtomicUsize::new(0),
+            attendant: Arc::clone(&ports.wake),
+            looked_in_vain: AtomicBool::new(false),
+        };
         Self { ports, desk: Arc::new(desk), runtime, spin, draining, copy: Vec::new(), handed_over: Vec::new() }
     }
 
@@ -86,13 +96,15 @@ impl Attendant {
     /// # Errors
     /// The memory is taken away.
     pub fn attend(mut self) -> Result<(), String> {
-        let mut cleaned = Instant::now();
+        let (mut cleaned, mut woken) = (Instant::now(), 0);
         loop {
             let draining = self.draining.load(Ordering::Acquire);
-            let mut any = false;
-            while let Some(waiting) = self.next() {
-                any = true;
-                self.take(waiting);
+            let mut any = self.take_all();
+            if woken > 0 && !any {
+                // A client's next request stays out of sight until its last one is let go of, a moment after the answer was
+                // sent. Whoever lets go of it after this look wakes the attendant again.
+                self.desk.looked_in_vain.store(true, Ordering::SeqCst);
+                any = self.take_all();
             }
             if draining && self.desk.handed_over.load(Ordering::Acquire) == 0 {
                 return Ok(());
@@ -107,7 +119,7 @@ impl Attendant {
                 (false, false) => STILL_THERE,
                 (false, true) => LOOK,
             };
-            let woken = sleep(&self.ports.asked, look)?;
+            woken = sleep(&self.ports.asked, look)?;
             // Where nothing comes, or only work for somebody who may have died is left.
             if woken == 0 && cleaned.elapsed() >= LOOK || cleaned.elapsed() > CLEANUP {
                 self.ports.node.try_cleanup_dead_nodes();
@@ -116,12 +128,27 @@ impl Attendant {
         }
     }
 
+    /// Takes every request that is there; whether there was any.
+    fn take_all(&mut self) -> bool {
+        let mut any = false;
+        while let Some(waiting) = self.next() {
+            any = true;
+            self.take(waiting);
+        }
+        any
+    }
+
     fn next(&self) -> Option<Pending> {
-        // A broken connection is its client's misfortune, not the door's.
-        self.ports.server.receive().unwrap_or_else(|error| {
-            tracing::warn!("a connection of shared memory cannot be read: {error}");
-            None
-        })
+        match self.ports.server.receive() {
+            Ok(request) => request,
+            // Of a client whose last request is not let go of yet.
+            Err(ReceiveError::ExceedsMaxBorrows) => None,
+            // A broken connection is its client's misfortune, not the door's.
+            Err(error @ ReceiveError::ConnectionFailure(_)) => {
+                tracing::warn!("a connection of shared memory cannot be read: {error}");
+                None
+            }
+        }
     }
 
     /// Looks for the next request for a short time, which is quicker than sleeping and being woken.
@@ -154,7 +181,7 @@ impl Attendant {
             Ok(Received::Called(called)) => return self.call(waiting, caller, called),
             Err(error) => {
                 self.desk.begin_call(Some(Rpc::UNREADABLE), caller).end(Outcome::of(&error));
-                return self.desk.give(&waiting, caller, &error_message(caller.nonce, &error));
+                return self.desk.give(waiting, caller, &error_message(caller.nonce, &error));
             }
         };
         let call = self.desk.begin_call(rpc_of(&request), caller);
@@ -163,7 +190,7 @@ impl Attendant {
             let asked = || self.desk.service.ask_here(&request.target, request.patience, question);
             if let Some(answer) = call.work_here(asked) {
                 call.end(Outcome::of_result(&answer));
-                return self.desk.give(&waiting, caller, &message_of(caller.nonce, answer));
+                return self.desk.give(waiting, caller, &message_of(caller.nonce, answer));
             }
         }
         self.hand_over(waiting, caller, request, Arc::new(call));
@@ -177,7 +204,7 @@ impl Attendant {
         let ended = Arc::clone(&call);
         let then = move |answer| {
             ended.end(Outcome::of_result(&answer));
-            counted.0.give(&locked(&pending), caller, &message_of(caller.nonce, answer));
+            counted.0.give_back(pending, caller, &message_of(caller.nonce, answer));
         };
         let asked = Arc::clone(&request);
         let question = move |view: &View| answered(&asked, caller.nonce, most, view);
@@ -187,7 +214,7 @@ impl Attendant {
             Ok(None) => self.wait(waiting, caller, request, call),
             Err(error) => {
                 call.end(Outcome::of(&error));
-                self.desk.give(&locked(&waiting), caller, &error_message(caller.nonce, &error));
+                self.desk.give_back(waiting, caller, &error_message(caller.nonce, &error));
             }
         }
     }
@@ -228,7 +255,7 @@ impl Attendant {
             tokio::pin!(answering);
             loop {
                 match tokio::time::timeout(STILL_THERE, &mut answering).await {
-                    Ok(answer) => return desk.give(&locked(&waiting), caller, &message_of(caller.nonce, answer)),
+                    Ok(answer) => return desk.give_back(waiting, caller, &message_of(caller.nonce, answer)),
                     // Dropping the question stops the work.
                     Err(_) if !is_wanted(&waiting) => return,
                     Err(_) => {}
@@ -299,14 +326,31 @@ impl Desk {
         self.service.begin_call(rpc, || Asker { door: DOOR, client: client(), traceparent: None })
     }
 
-    /// Sends an answer and wakes the one who waits for it. A caller that is gone, or does not fetch its answers, gets
-    /// none: it has stopped waiting, or will by its own deadline.
-    fn give(&self, waiting: &Pending, caller: Caller, message: &[u8]) {
+    /// Sends an answer, lets go of the request, and wakes the one who waits. A caller that is gone, or does not fetch its
+    /// answers, gets none: it has stopped waiting, or will by its own deadline.
+    fn give(&self, waiting: Pending, caller: Caller, message: &[u8]) {
+        self.send(&waiting, message);
+        drop(waiting);
+        self.wake(caller.client);
+    }
+
+    /// The same of a request that was handed over.
+    fn give_back(&self, waiting: Arc<Mutex<Pending>>, caller: Caller, message: &[u8]) {
+        self.send(&locked(&waiting), message);
+        drop(waiting);
+        self.wake(caller.client);
+        if self.looked_in_vain.swap(false, Ordering::SeqCst)
+            && let Err(error) = self.attendant.notify()
+        {
+            tracing::debug!("the attendant of shared memory was not woken: {error:?}");
+        }
+    }
+
+    fn send(&self, waiting: &Pending, message: &[u8]) {
         self.traffic.sent_bytes.add(message.len() as u64);
         if let Err(problem) = self.try_give(waiting, message) {
             tracing::warn!("an answer through shared memory was not delivered: {problem}");
         }
-        self.wake(caller.client);
     }
 
     fn try_give(&self, waiting: &Pending, message: &[u8]) -> Result<(), String> {

@@ -88,6 +88,8 @@ pub(super) struct Ports {
     pub server: Port,
     pub asked: Listener<Ipc>,
     pub answered: Arc<Notifier<Ipc>>,
+    /// Wakes who sleeps at `asked`.
+    pub wake: Arc<Notifier<Ipc>>,
     pub node: Node<Ipc>,
 }
 
@@ -97,7 +99,6 @@ pub struct Listening {
     endpoint: Endpoint,
     spin: Duration,
     ports: Ports,
-    wake: Notifier<Ipc>,
 }
 
 impl Config {
@@ -136,10 +137,11 @@ impl Config {
             server,
             asked: asked.listener_builder().create().map_err(told).map_err(failed)?,
             answered: Arc::new(answered.notifier_builder().create().map_err(told).map_err(failed)?),
+            wake: Arc::new(wake),
             node,
         };
         space::take(&endpoint.prefix())?;
-        Ok(Listening { endpoint, spin: self.spin, ports, wake })
+        Ok(Listening { endpoint, spin: self.spin, ports })
     }
 
     /// Only the same user gets in: the folder says where the segments are.
@@ -211,7 +213,8 @@ impl Listening {
     /// # Errors
     /// The memory is taken away, or there is no thread.
     pub async fn serve(self, service: Arc<Service>, drain: impl Future<Output = ()> + Send) -> Result<(), String> {
-        let Self { spin, ports, wake, .. } = self;
+        let Self { spin, ports, .. } = self;
+        let wake = Arc::clone(&ports.wake);
         let draining = Arc::new(AtomicBool::new(false));
         let attendant = Attendant::new(ports, service, Handle::current(), spin, Arc::clone(&draining));
         let (ended, mut end) = oneshot::channel();

@@ -2,6 +2,7 @@
 
 use std::pin::Pin;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
@@ -25,7 +26,7 @@ use crate::transports::wire::to_proto;
 /// Queries of up to so many bytes are begun where they arrive. Most small questions are answered there, too: to hand them over
 /// takes longer than the answer.
 const SMALL_QUERY: usize = 4 << 10;
-/// Replies of up to so many bytes are sent without making room for other tasks first: they wait only where the connection is full.
+/// Replies of up to so many bytes are sent by the thread on which their query arrived, if they are there at once.
 const SMALL_REPLY: usize = 16 << 10;
 
 /// What all queries share.
@@ -37,6 +38,8 @@ pub(super) struct Desk {
     traffic: Arc<Traffic>,
     /// How many are being answered.
     under_way: watch::Sender<usize>,
+    /// How many replies are being sent: those to a caller that does not read wait for seconds.
+    sending: AtomicUsize,
 }
 
 impl Desk {
@@ -47,6 +50,7 @@ impl Desk {
             callers: Callers::new(session, keys).await?,
             traffic: service.traffic(DOOR),
             under_way: watch::Sender::new(0),
+            sending: AtomicUsize::new(0),
         }))
     }
 
@@ -111,11 +115,13 @@ impl Drop for Counted {
 
 /// Works on an answer on this thread, which is one of zenoh's, as far as it goes without waiting; a task does the rest.
 fn begin(mut answering: Pin<Box<Answering>>, runtime: &Handle) {
-    if answering.is_small {
+    if answering.is_quick {
         let _guard = runtime.enter();
+        answering.here.store(true, Ordering::Relaxed);
         if answering.as_mut().poll(&mut Context::from_waker(Waker::noop())).is_ready() {
             return;
         }
+        answering.here.store(false, Ordering::Relaxed);
     }
     // The first poll in there takes the place of the waker that does nothing.
     runtime.spawn(answering);
@@ -123,7 +129,9 @@ fn begin(mut answering: Pin<Box<Answering>>, runtime: &Handle) {
 
 /// The answer to a query, on its way.
 struct Answering {
-    is_small: bool,
+    is_quick: bool,
+    /// Whether the thread is the one on which the query arrived.
+    here: Arc<AtomicBool>,
     work: Pin<Box<dyn Future<Output = ()> + Send>>,
 }
 
@@ -137,6 +145,10 @@ impl Future for Answering {
 
 fn answer(desk: Arc<Desk>, query: Query) -> Answering {
     let is_small = query.payload().is_none_or(|payload| payload.len() <= SMALL_QUERY);
+    // Where one reply waits for its caller to read, the next could, too, and zenoh has few threads.
+    let is_quick = is_small && desk.sending.load(Ordering::Acquire) == 0;
+    let here = Arc::new(AtomicBool::new(false));
+    let is_here = Arc::clone(&here);
     let counted = Counted::new(&desk);
     let work = async move {
         let _counted = counted;
@@ -144,7 +156,7 @@ fn answer(desk: Arc<Desk>, query: Query) -> Answering {
         desk.received(bytes);
         let selected = Selected::read(&desk.keys, query.key_expr().as_str(), query.parameters().as_str());
         let call = desk.begin_call(selected.as_ref().ok());
-        let reply = Replies { desk: &desk, query: &query };
+        let reply = Replies { desk: &desk, query: &query, here: &is_here };
         let outcome = match selected {
             Ok(selected) => reply.answered(&selected, &call, bytes).await,
             Err(error) => Err(error),
@@ -158,7 +170,7 @@ fn answer(desk: Arc<Desk>, query: Query) -> Answering {
             }
         }
     };
-    Answering { is_small, work: Box::pin(work) }
+    Answering { is_quick, here, work: Box::pin(work) }
 }
 
 /// How an answer ended without an error.
@@ -173,6 +185,7 @@ enum Ended {
 struct Replies<'a> {
     desk: &'a Desk,
     query: &'a Query,
+    here: &'a AtomicBool,
 }
 
 impl Replies<'_> {
@@ -229,22 +242,26 @@ impl Replies<'_> {
     }
 
     fn send(&self, message: Vec<u8>) {
-        self.desk.sent(message.len());
-        let is_small = message.len() <= SMALL_REPLY;
-        let reply = || {
-            self.query
-                .reply(self.query.key_expr(), message)
-                .encoding(Encoding::APPLICATION_PROTOBUF)
-                .express(true)
-                .wait()
-        };
-        told(if is_small { reply() } else { tokio::task::block_in_place(reply) });
+        let bytes = message.len();
+        self.tell(bytes, || {
+            let reply = self.query.reply(self.query.key_expr(), message);
+            reply.encoding(Encoding::APPLICATION_PROTOBUF).express(true).wait()
+        });
     }
 
     fn refuse(&self, error: &ServiceError) {
         let message = to_proto::query_error(error).encode_to_vec();
-        self.desk.sent(message.len());
-        told(self.query.reply_err(message).encoding(Encoding::APPLICATION_PROTOBUF).wait());
+        let bytes = message.len();
+        self.tell(bytes, || self.query.reply_err(message).encoding(Encoding::APPLICATION_PROTOBUF).wait());
+    }
+
+    /// Sends a reply, which waits where the caller does not read what came before.
+    fn tell(&self, bytes: usize, reply: impl FnOnce() -> Result<()>) {
+        self.desk.sent(bytes);
+        self.desk.sending.fetch_add(1, Ordering::AcqRel);
+        let here = self.here.load(Ordering::Relaxed) && bytes <= SMALL_REPLY;
+        told(if here { reply() } else { tokio::task::block_in_place(reply) });
+        self.desk.sending.fetch_sub(1, Ordering::AcqRel);
     }
 }
 

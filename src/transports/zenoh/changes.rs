@@ -10,7 +10,7 @@ use tokio::task::{AbortHandle, JoinSet};
 use zenoh::bytes::Encoding;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::qos::CongestionControl;
-use zenoh::{Result, Session};
+use zenoh::{Result, Session, Wait};
 use zenoh_ext::{AdvancedPublisher, AdvancedPublisherBuilderExt, CacheConfig, MissDetectionConfig};
 
 use super::callers::token;
@@ -160,7 +160,9 @@ impl Publication {
                 Err(error) => return error,
             };
             self.desk.sent(message.len());
-            if let Err(error) = self.publisher.put(message).await {
+            // Where a subscriber does not read, this waits a while before the step is dropped.
+            let put = || self.publisher.put(message).wait();
+            if let Err(error) = tokio::task::block_in_place(put) {
                 tracing::debug!(scene = self.scene, "a step was not told through zenoh: {error}");
             }
         }

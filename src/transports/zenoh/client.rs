@@ -2,18 +2,21 @@
 //! own, and a watch that is dropped stops by its token.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use prost::Message;
 use prost::bytes::Bytes;
 use serde_json::json;
+use tokio::sync::mpsc;
 use zenoh::Session;
 use zenoh::bytes::Encoding;
-use zenoh::handlers::{FifoChannel, FifoChannelHandler};
+use zenoh::handlers::{DefaultHandler, FifoChannel};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::qos::CongestionControl;
 use zenoh::query::{ConsolidationMode, Reply};
+use zenoh::session::SessionGetBuilder;
 
 use super::callers::token;
 use super::keys::{BadPrefix, Keys, Of};
@@ -42,6 +45,9 @@ pub enum ClientError {
     /// What came is no answer.
     #[error("not an answer: {0}")]
     Malformed(#[from] prost::DecodeError),
+    /// A watch was read so slowly that it was given up.
+    #[error("more than {WAITING} bytes of a watch waited to be read")]
+    TooSlow,
     /// zenoh refuses.
     #[error("zenoh: {0}")]
     System(String),
@@ -82,8 +88,8 @@ fn system(error: zenoh::Error) -> ClientError {
 
 /// The daemon gives up first, so that its own answer arrives.
 const LONGER: Duration = Duration::from_millis(500);
-/// Replies of a watch that wait to be read before the connection does.
-const WAITING: usize = 16;
+/// Bytes of a watch that may wait to be read. Nobody else on the connection waits for a slow reader.
+const WAITING: usize = 64 << 20;
 
 /// A connection to the network of a daemon.
 #[derive(Debug)]
@@ -129,7 +135,9 @@ impl Client {
         timeout: Duration,
     ) -> Result<Bytes, ClientError> {
         let parameters = format!("client={}", self.id);
-        let replies = self.ask(rpc, message.into(), timeout, &parameters).await?;
+        let query = self.query(rpc, message.into(), timeout, &parameters);
+        // Two daemons of one prefix are more than there should be.
+        let replies = query.with(FifoChannel::new(2)).await.map_err(system)?;
         match replies.recv_async().await {
             Ok(reply) => told(reply, timeout),
             Err(_) => Err(ClientError::NoDaemon { prefix: self.keys.prefix().to_owned() }),
@@ -150,17 +158,30 @@ impl Client {
         let id = format!("{}/{}", self.id, self.watches.fetch_add(1, Ordering::Relaxed));
         let _token = token(&self.session, self.keys.client(&id)).await.map_err(system)?;
         let steps = steps.map(|steps| format!(";steps={steps}")).unwrap_or_default();
-        let replies = self.ask(rpc, message.into(), timeout, &format!("client={id}{steps}")).await?;
-        Ok(Watch { replies, timeout, _token })
+        let (sender, replies) = mpsc::unbounded_channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let query = self.query(rpc, message.into(), timeout, &format!("client={id}{steps}"));
+        let counted = Arc::clone(&waiting);
+        let taken = move |reply: Reply| {
+            let bytes = reply.result().map_or(0, |sample| sample.payload().len());
+            // What is beyond the bound is let go of, and the reader is told.
+            if counted.load(Ordering::Acquire) <= WAITING {
+                counted.fetch_add(bytes, Ordering::AcqRel);
+                // A watch that was dropped has no reader.
+                _ = sender.send(reply);
+            }
+        };
+        query.callback(taken).await.map_err(system)?;
+        Ok(Watch { replies, waiting, timeout, _token })
     }
 
-    async fn ask(
+    fn query(
         &self,
         rpc: &str,
         message: Vec<u8>,
         timeout: Duration,
         parameters: &str,
-    ) -> Result<FifoChannelHandler<Reply>, ClientError> {
+    ) -> SessionGetBuilder<'_, 'static, DefaultHandler> {
         let selector = format!("{}?timeout={};{parameters}", self.keys.call(rpc), timeout.as_secs_f64());
         self.session
             .get(selector)
@@ -170,9 +191,6 @@ impl Client {
             .consolidation(ConsolidationMode::None)
             .congestion_control(CongestionControl::Block)
             .express(true)
-            .with(FifoChannel::new(WAITING))
-            .await
-            .map_err(system)
     }
 
     /// Moves one body or robot of a scene. Nobody says what becomes of it.
@@ -229,7 +247,9 @@ pub(super) fn client_of(endpoint: &str) -> zenoh::Result<zenoh::Config> {
 /// Messages of a watch. Dropping it ends it.
 #[derive(Debug)]
 pub struct Watch {
-    replies: FifoChannelHandler<Reply>,
+    replies: mpsc::UnboundedReceiver<Reply>,
+    /// Bytes of replies that are not read yet.
+    waiting: Arc<AtomicUsize>,
     timeout: Duration,
     _token: LivelinessToken,
 }
@@ -240,10 +260,13 @@ impl Watch {
     /// # Errors
     /// [`ClientError`]. Then the watch has ended.
     pub async fn next(&mut self) -> Result<Option<Bytes>, ClientError> {
-        match self.replies.recv_async().await {
-            Ok(reply) => told(reply, self.timeout).map(Some),
-            Err(_) => Ok(None),
+        if self.waiting.load(Ordering::Acquire) > WAITING {
+            return Err(ClientError::TooSlow);
         }
+        let Some(reply) = self.replies.recv().await else { return Ok(None) };
+        let message = told(reply, self.timeout)?;
+        self.waiting.fetch_sub(message.len(), Ordering::AcqRel);
+        Ok(Some(message))
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use prost::Message;
-use zenoh::handlers::{FifoChannel, FifoChannelHandler};
+use zenoh::handlers::{RingChannel, RingChannelHandler};
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig, RecoveryConfig};
@@ -12,7 +12,8 @@ use zenoh_ext::{AdvancedSubscriber, AdvancedSubscriberBuilderExt, HistoryConfig,
 use super::client::{Client, ClientError};
 use crate::transports::wire::v1;
 
-/// Steps that wait to be read. A reader that is slower misses some, and asks for them.
+/// Steps that wait to be read. A reader that is slower misses the oldest, sees the gap, and asks for what leads on; nobody else on
+/// the connection waits for it.
 const WAITING: usize = 256;
 /// How long the log is waited for.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -24,9 +25,9 @@ const AGAIN: Duration = Duration::from_millis(200);
 pub struct Follower<'a> {
     client: &'a Client,
     scene: String,
-    published: AdvancedSubscriber<FifoChannelHandler<Sample>>,
+    published: AdvancedSubscriber<RingChannelHandler<Sample>>,
     /// The daemon comes and goes.
-    alive: Subscriber<FifoChannelHandler<Sample>>,
+    alive: Subscriber<RingChannelHandler<Sample>>,
     /// Life of the scene and revision that the copy is at.
     at: Option<(u64, u64)>,
     /// Messages of steps that are not told yet.
@@ -46,13 +47,13 @@ impl Client {
         let published = self
             .session()
             .declare_subscriber(self.keys().changes(scene))
-            .with(FifoChannel::new(WAITING))
+            .with(RingChannel::new(WAITING))
             .history(HistoryConfig::default().detect_late_publishers())
             .recovery(RecoveryConfig::default().heartbeat())
             .await
             .map_err(system)?;
         let alive = self.session().liveliness().declare_subscriber(self.keys().alive()).history(true);
-        let alive = alive.with(FifoChannel::new(WAITING)).await.map_err(system)?;
+        let alive = alive.with(RingChannel::new(WAITING)).await.map_err(system)?;
         Ok(Follower {
             client: self,
             scene: scene.to_owned(),

@@ -4,18 +4,19 @@
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use prost::Message;
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 use tokio_stream::StreamExt;
-use tokio_stream::wrappers::ReceiverStream;
+use tokio_stream::wrappers::UnboundedReceiverStream;
 use zenoh::bytes::Encoding;
 use zenoh::handlers::{FifoChannel, FifoChannelHandler};
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
-use zenoh::{Result, Session};
+use zenoh::{Result, Session, Wait};
 
 use super::calls::Desk;
 use super::keys::{Of, Posed};
@@ -27,8 +28,6 @@ use crate::transports::wire::{to_proto, v1};
 
 /// Puts that wait for the daemon before those who put have to.
 const WAITING: usize = 256;
-/// Messages that wait for a feed.
-const WAITING_FOR_FEED: usize = 64;
 /// A feed without puts ends after so long.
 const IDLE: Duration = Duration::from_secs(10);
 
@@ -49,8 +48,25 @@ pub(super) struct Poses {
 
 #[derive(Debug)]
 struct Feed {
-    messages: mpsc::Sender<v1::PoseStreamRequest>,
+    messages: mpsc::UnboundedSender<Waiting>,
+    /// Bytes of those that wait. A scene that is slow to change holds up no other, and nobody's calls.
+    bytes: Arc<AtomicUsize>,
     last: Instant,
+}
+
+/// A message that waits for its scene.
+#[derive(Debug)]
+struct Waiting {
+    message: v1::PoseStreamRequest,
+    bytes: usize,
+}
+
+impl Feed {
+    /// Takes a message; it comes back if the feed has ended.
+    fn take(&self, waiting: Waiting) -> std::result::Result<(), Waiting> {
+        self.bytes.fetch_add(waiting.bytes, Ordering::AcqRel);
+        self.messages.send(waiting).map_err(|mpsc::error::SendError(back)| back)
+    }
 }
 
 impl Poses {
@@ -93,62 +109,72 @@ impl Poses {
             if put.kind() == SampleKind::Put
                 && let Some((scene, posed)) = self.desk.keys.posed(put.key_expr().as_str())
             {
-                match self.read(&put, posed) {
-                    Ok(message) => self.feed(scene, message).await,
-                    Err(error) => self.refuse(&scene, &error).await,
+                let taken = self.read(&put, posed).and_then(|waiting| self.feed(&scene, waiting));
+                if let Err(error) = taken {
+                    self.refuse(&scene, &error);
                 }
             }
         }
     }
 
     /// The message that a put is, whatever its key.
-    fn read(&self, put: &Sample, posed: Posed) -> std::result::Result<v1::PoseStreamRequest, ServiceError> {
+    fn read(&self, put: &Sample, posed: Posed) -> std::result::Result<Waiting, ServiceError> {
         let bytes = put.payload().to_bytes();
         self.desk.received(bytes.len());
         LimitExceeded::check("max_message_bytes", bytes.len(), self.desk.service.limits().max_message_bytes)?;
         let malformed = |error| ServiceError::invalid("message", error);
         let Posed::One(of) = posed else {
             let message = v1::PoseStreamRequest::decode(&*bytes).map_err(malformed)?;
-            return alone(message);
+            return Ok(Waiting { message: alone(message)?, bytes: bytes.len() });
         };
         let pose = Some(v1::Pose::decode(&*bytes).map_err(malformed)?);
         let of_body = |by| v1::PoseStreamRequest {
             bodies: vec![v1::BodyPose { body: Some(v1::BodyRef { by: Some(by) }), pose }],
             ..v1::PoseStreamRequest::default()
         };
-        Ok(match of {
+        let message = match of {
             Of::Body(name) => of_body(By::Name(name)),
             Of::Id(id) => of_body(By::Id(id)),
             Of::Robot(robot) => v1::PoseStreamRequest {
                 robots: vec![v1::RobotPose { robot, base: pose }],
                 ..v1::PoseStreamRequest::default()
             },
-        })
+        };
+        Ok(Waiting { message, bytes: bytes.len() })
     }
 
     /// Gives a message to its scene's feed, which begins if there is none.
-    async fn feed(&mut self, scene: String, mut message: v1::PoseStreamRequest) {
-        if let Some(feed) = self.feeds.get_mut(&scene) {
-            feed.last = Instant::now();
-            match feed.messages.send(message).await {
-                Ok(()) => return,
-                // It has ended; the message begins the next one.
-                Err(mpsc::error::SendError(back)) => message = back,
+    fn feed(&mut self, scene: &str, waiting: Waiting) -> std::result::Result<(), ServiceError> {
+        let most = self.desk.service.limits().max_message_bytes;
+        let waiting = match self.feeds.get_mut(scene) {
+            None => waiting,
+            Some(feed) => {
+                LimitExceeded::check("max_message_bytes", feed.bytes.load(Ordering::Acquire) + waiting.bytes, most)?;
+                feed.last = Instant::now();
+                match feed.take(waiting) {
+                    Ok(()) => return Ok(()),
+                    // It has ended; the message begins the next one.
+                    Err(back) => back,
+                }
             }
-        }
-        let (messages, sent) = mpsc::channel(WAITING_FOR_FEED);
-        message.scene.clone_from(&scene);
-        // There is room for the first.
-        _ = messages.try_send(message);
-        self.running.spawn(fed(Arc::clone(&self.desk), self.session.clone(), scene.clone(), sent));
-        self.feeds.insert(scene, Feed { messages, last: Instant::now() });
+        };
+        let (messages, sent) = mpsc::unbounded_channel();
+        let feed = Feed { messages, bytes: Arc::default(), last: Instant::now() };
+        let begun =
+            fed(Arc::clone(&self.desk), self.session.clone(), scene.to_owned(), (sent, Arc::clone(&feed.bytes)));
+        self.running.spawn(begun);
+        let message = v1::PoseStreamRequest { scene: scene.to_owned(), ..waiting.message };
+        // Its other end waits in the task.
+        _ = feed.take(Waiting { message, ..waiting });
+        self.feeds.insert(scene.to_owned(), feed);
+        Ok(())
     }
 
-    async fn refuse(&self, scene: &str, error: &ServiceError) {
+    fn refuse(&self, scene: &str, error: &ServiceError) {
         if let Some(times) = self.refused.due() {
             tracing::warn!(scene, times, "poses put through zenoh were refused: {error}");
         }
-        refuse(&self.desk, &self.session, scene, error).await;
+        refuse(&self.desk, &self.session, scene, error);
     }
 }
 
@@ -166,31 +192,40 @@ fn alone(message: v1::PoseStreamRequest) -> std::result::Result<v1::PoseStreamRe
 }
 
 /// Makes what comes, and tells what became of it, until no more comes or the scene is gone.
-async fn fed(desk: Arc<Desk>, session: Session, scene: String, sent: mpsc::Receiver<v1::PoseStreamRequest>) {
-    let sent = ReceiverStream::new(sent).map(Ok::<_, Infallible>);
+async fn fed(
+    desk: Arc<Desk>,
+    session: Session,
+    scene: String,
+    (sent, bytes): (mpsc::UnboundedReceiver<Waiting>, Arc<AtomicUsize>),
+) {
+    let sent = UnboundedReceiverStream::new(sent).map(|waiting| {
+        bytes.fetch_sub(waiting.bytes, Ordering::AcqRel);
+        Ok::<_, Infallible>(waiting.message)
+    });
     let mut made = requests::pose_stream(&desk.service, sent, None);
     let key = desk.keys.poses_made(&scene);
     loop {
         match made.next().await {
-            Ok(Some(told)) => publish(&desk, &session, &key, told.encode_to_vec()).await,
+            Ok(Some(told)) => publish(&desk, &session, &key, told.encode_to_vec()),
             Ok(None) => return,
             Err(error) => {
                 tracing::debug!(scene, "a feed of poses has ended: {error}");
-                return refuse(&desk, &session, &scene, &error).await;
+                return refuse(&desk, &session, &scene, &error);
             }
         }
     }
 }
 
-async fn refuse(desk: &Desk, session: &Session, scene: &str, error: &ServiceError) {
+fn refuse(desk: &Desk, session: &Session, scene: &str, error: &ServiceError) {
     let message = to_proto::query_error(error).encode_to_vec();
-    publish(desk, session, &desk.keys.poses_refused(scene), message).await;
+    publish(desk, session, &desk.keys.poses_refused(scene), message);
 }
 
-/// Nobody has to listen, and nobody waits for those who listen slowly.
-async fn publish(desk: &Desk, session: &Session, key: &str, message: Vec<u8>) {
+/// Nobody has to listen. Where somebody listens and does not read, this waits a while before the message is dropped.
+fn publish(desk: &Desk, session: &Session, key: &str, message: Vec<u8>) {
     desk.sent(message.len());
-    if let Err(error) = session.put(key, message).encoding(Encoding::APPLICATION_PROTOBUF).await {
+    let put = || session.put(key, message).encoding(Encoding::APPLICATION_PROTOBUF).wait();
+    if let Err(error) = tokio::task::block_in_place(put) {
         tracing::debug!(key, "not told through zenoh: {error}");
     }
 }

@@ -112,7 +112,7 @@ async fn work_for_a_killed_client_stops() {
 fn serve(name: &str, root: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_clearance"));
     command.args(["serve", "--grpc-address", "127.0.0.1:0", "--shared-memory-name", name, "--shared-memory-root"]);
-    command.arg(root).args(["--limit", "max_shared_memory_clients=2"]);
+    command.arg(root).args(["--limit", "max_shared_memory_clients=2", "--no-zenoh"]);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
@@ -256,7 +256,11 @@ fn serve_in_small_memory(bytes: usize, arguments: &[&str]) -> Option<Command> {
     let script = format!("mount -t tmpfs -o size={bytes} tmpfs /dev/shm && exec \"$0\" \"$@\"");
     let mut command = in_a_mount_namespace(&script, Path::new(env!("CARGO_BIN_EXE_clearance")))?;
     command.arg("serve");
-    command.args(["--grpc-address", "127.0.0.1:0"]).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(["--grpc-address", "127.0.0.1:0", "--no-zenoh"])
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     Some(command)
 }
 

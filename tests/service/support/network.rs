@@ -23,6 +23,8 @@ pub struct State {
     pub held: AtomicBool,
     /// Bytes to the daemon before the connection breaks; 0: it does not.
     pub breaks_after: AtomicUsize,
+    /// Nothing comes back from the daemon: a caller that does not read.
+    pub unread: AtomicBool,
     /// Nothing comes through, connections are broken and none is let through: a cable that is out.
     pub cut: AtomicBool,
     /// Bytes that went to the daemon.
@@ -70,7 +72,10 @@ async fn pass(mut from: OwnedReadHalf, mut to: OwnedWriteHalf, state: Arc<State>
             () = cut(&state) => return,
         };
         let Ok(count @ 1..) = read else { return };
-        while state.held.load(Ordering::Acquire) {
+        while state.held.load(Ordering::Acquire) || !to_daemon && state.unread.load(Ordering::Acquire) {
+            if state.cut.load(Ordering::Acquire) {
+                return;
+            }
             tokio::time::sleep(Duration::from_millis(5)).await;
         }
         if to_daemon {

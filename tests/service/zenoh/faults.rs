@@ -1,12 +1,14 @@
 //! What breaks between a caller and the daemon: the caller is told in time, no edit is half applied, and whoever is left goes on.
 
 use std::io::Write as _;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clearance::app::DoorChoice;
 use clearance::limits::Limits;
 use clearance::transports::wire::v1;
+use clearance::transports::wire::v1::server_client::ServerClient;
 use clearance::transports::zenoh::{Client, ClientError, Config};
 use prost::Message;
 
@@ -259,28 +261,41 @@ async fn strangers_who_do_not_speak_zenoh_disturb_nobody() {
     assert!(answers(&new).await);
 }
 
-/// A caller that asks for much and reads nothing: a process that is stopped. Others are answered meanwhile.
-#[tokio::test(flavor = "multi_thread")]
+/// A caller that asks for much and reads nothing. All others are answered meanwhile, whatever door they come through: replies that
+/// wait for it hold up neither zenoh's threads nor the daemon's.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_caller_that_does_not_read_holds_up_nobody() {
-    let door = with_balls(Limits::default(), 0).await;
+    let door = with_balls(Limits { max_queries_in_flight: 1_000, ..Limits::default() }, 0).await;
     door.apply(heap()).await.unwrap();
     let network = Network::to(door.endpoint.strip_prefix("tcp/").unwrap()).await;
-    let slow = Client::connect(&format!("tcp/{}", network.address), PREFIX).await.unwrap();
-    // Half a megabyte an answer; nothing comes through after the questions are there.
-    let question = heap_listed(10).encode_to_vec();
-    let asking = tokio::spawn(async move {
-        let ask = || slow.call("Queries/Collide", question.clone(), Duration::from_secs(20));
-        futures_of((0..40).map(|_| ask()).collect()).await
-    });
-    tokio::time::sleep(Duration::from_millis(100)).await;
-    network.state.held.store(true, Ordering::Release);
-    for _ in 0..200 {
-        assert!(answers(&door.client).await);
+    let slow = Arc::new(Client::connect(&format!("tcp/{}", network.address), PREFIX).await.unwrap());
+    assert!(answers(&slow).await);
+    network.state.unread.store(true, Ordering::Release);
+    // Half a megabyte an answer, until no more fits between the two; then small ones, of which some are there at once and some
+    // are answered by tasks.
+    let (large, small) = (heap_listed(10).encode_to_vec(), collide(vec![all_pairs()]).encode_to_vec());
+    let mut asking = Vec::new();
+    for question in [vec![large; 60], vec![small; 20]].concat() {
+        let slow = Arc::clone(&slow);
+        asking.push(tokio::spawn(async move { slow.call("Queries/Collide", question, Duration::from_secs(60)).await }));
     }
-    let service = &door.daemon.service;
+    for _ in 0..20 {
+        let slow = Arc::clone(&slow);
+        asking.push(tokio::spawn(async move { slow.call("Server/GetServerInfo", [], Duration::from_secs(60)).await }));
+    }
+    let mut server = ServerClient::connect(format!("http://{}", door.daemon.address)).await.unwrap();
+    let begun = std::time::Instant::now();
+    // Five seconds is what zenoh waits before it gives a connection up.
+    while begun.elapsed() < Duration::from_secs(4) {
+        let mut request = tonic::Request::new(v1::GetServerInfoRequest {});
+        request.set_timeout(Duration::from_secs(2));
+        server.get_server_info(request).await.unwrap();
+        door.client.call("Server/GetServerInfo", [], Duration::from_secs(2)).await.unwrap();
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
     network.state.cut.store(true, Ordering::Release);
-    network.state.held.store(false, Ordering::Release);
+    let service = &door.daemon.service;
     eventually("no work for nobody", || service.queries_in_flight() == 0).await;
-    drop(watched("the slow one", asking).await);
+    asking.iter().for_each(tokio::task::JoinHandle::abort);
     assert!(answers(&door.client).await);
 }
