@@ -308,7 +308,7 @@ fn nothing_listens_where_nobody_asked_for_metrics() {
     use std::io::Read;
     let mut child = serve().spawn().unwrap();
     std::thread::sleep(Duration::from_millis(500));
-    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     assert_eq!(child.wait().unwrap().code(), Some(0));
     let mut told = String::new();
