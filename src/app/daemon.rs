@@ -15,7 +15,7 @@ use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
 use crate::transports::shared_memory;
 #[cfg(feature = "zenoh")]
-use crate::transports::zenoh;
+use crate::transports::zenoh as zenoh_door;
 
 /// A daemon whose doors are open and not served yet.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ struct Doors {
     #[cfg(feature = "shared-memory")]
     shared_memory: Option<shared_memory::Listening>,
     #[cfg(feature = "zenoh")]
-    zenoh: Option<zenoh::Listening>,
+    zenoh: Option<zenoh_door::Listening>,
 }
 
 /// Why a daemon did not begin.
@@ -59,7 +59,7 @@ pub enum StartError {
     /// A door cannot be opened.
     #[cfg(feature = "zenoh")]
     #[error(transparent)]
-    Zenoh(#[from] zenoh::BindError),
+    Zenoh(#[from] zenoh_door::BindError),
 }
 
 /// Why a daemon ended by itself.
@@ -184,7 +184,7 @@ impl Doors {
             #[cfg(feature = "shared-memory")]
             self.shared_memory.as_ref().map(shared_memory::Listening::door),
             #[cfg(feature = "zenoh")]
-            self.zenoh.as_ref().map(zenoh::Listening::door),
+            self.zenoh.as_ref().map(zenoh_door::Listening::door),
         ];
         doors.into_iter().flatten().collect()
     }

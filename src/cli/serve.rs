@@ -18,7 +18,7 @@ use crate::transports::grpc;
 #[cfg(feature = "shared-memory")]
 use crate::transports::shared_memory;
 #[cfg(feature = "zenoh")]
-use crate::transports::zenoh;
+use crate::transports::zenoh as zenoh_door;
 
 /// Flags of `clearance serve`. Each may also stand in the environment, or in the file.
 #[derive(clap::Args, Clone, Debug)]
@@ -259,8 +259,8 @@ fn exit_of_shared_memory(error: &shared_memory::BindError) -> Exit {
 
 /// How the process ends when the door cannot be opened.
 #[cfg(feature = "zenoh")]
-fn exit_of_zenoh(error: &zenoh::BindError) -> Exit {
-    use zenoh::{BadConfig, BindError};
+fn exit_of_zenoh(error: &zenoh_door::BindError) -> Exit {
+    use zenoh_door::{BadConfig, BindError};
     match error {
         BindError::Config(BadConfig::File { .. }) => Exit::Input,
         BindError::Config(

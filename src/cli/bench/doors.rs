@@ -52,7 +52,7 @@ pub(super) fn open(
         OpenDoor { name: "gRPC, Unix socket", asker: Box::new(Unary::new(&unix)?), floor: Box::new(unix_floor) },
     ];
     #[cfg(feature = "zenoh")]
-    doors.push(zenoh::open(service, runtime)?);
+    doors.push(zenoh_door::open(service, runtime)?);
     #[cfg(feature = "shared-memory")]
     doors.push(shared_memory::open(service, runtime, place, spin)?);
     Ok(doors)
@@ -102,7 +102,7 @@ impl Asker for Unary {
 }
 
 #[cfg(feature = "zenoh")]
-pub(super) mod zenoh {
+pub(super) mod zenoh_door {
     //! Through zenoh, over TCP.
 
     use super::*;

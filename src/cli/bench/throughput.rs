@@ -69,8 +69,8 @@ pub(super) fn measure(
     #[cfg(feature = "zenoh")]
     let zenoh_client = {
         use crate::transports::zenoh::Client;
-        let endpoint = super::doors::zenoh::serve(service, runtime)?;
-        let connected = runtime.block_on(Client::connect(&endpoint, super::doors::zenoh::PREFIX));
+        let endpoint = super::doors::zenoh_door::serve(service, runtime)?;
+        let connected = runtime.block_on(Client::connect(&endpoint, super::doors::zenoh_door::PREFIX));
         Arc::new(connected.map_err(Failed::failure)?)
     };
     #[cfg(feature = "shared-memory")]
@@ -145,7 +145,7 @@ async fn called(client: &BulkClient, batch: &Batch, time: Duration) -> Result<Ru
 async fn queried(client: &Arc<crate::transports::zenoh::Client>, batch: &Batch, time: Duration) -> Result<Run, Failed> {
     kept_busy(time, || {
         let (client, batch) = (Arc::clone(client), batch.clone());
-        async move { super::doors::zenoh::asked(&client, &batch).await.map(drop).map_err(|error| error.message) }
+        async move { super::doors::zenoh_door::asked(&client, &batch).await.map(drop).map_err(|error| error.message) }
     })
     .await
 }

@@ -33,7 +33,7 @@ use crate::transports::grpc::{Client, RemoteEdit, RemoteRobot};
 #[cfg(feature = "shared-memory")]
 use crate::transports::shared_memory;
 #[cfg(feature = "zenoh")]
-use crate::transports::zenoh;
+use crate::transports::zenoh as zenoh_door;
 
 /// Flags of `clearance demo`.
 #[derive(clap::Args, Clone, Debug)]
@@ -89,7 +89,7 @@ async fn with_daemon(demo: &Demo, output: &mut dyn Write) -> Result<(), Failed> 
     }
     #[cfg(feature = "zenoh")]
     {
-        config.zenoh = DoorChoice::On(zenoh::Config::on_loopback(ZENOH_PREFIX));
+        config.zenoh = DoorChoice::On(zenoh_door::Config::on_loopback(ZENOH_PREFIX));
     }
     let daemon = Daemon::build(&config).await.map_err(Failed::failure)?;
     let doors = Doors { open: daemon.doors(), folder: folder.path().to_owned() };
