@@ -2,6 +2,7 @@
 
 mod config;
 mod daemon;
+#[cfg(any(feature = "shared-memory", feature = "zenoh"))]
 mod door_choice;
 mod grpc_settings;
 mod logging;
@@ -15,6 +16,7 @@ mod zenoh_settings;
 
 pub use config::{Config, ConfigError, Settings, defaults};
 pub use daemon::{Daemon, Drained, RunError, StartError};
+#[cfg(any(feature = "shared-memory", feature = "zenoh"))]
 pub use door_choice::DoorChoice;
 pub use grpc_settings::{GrpcSettings, TlsSettings, TokenSettings, WebSettings};
 pub use logging::{BadLogging, LogFormat, Logging};
