@@ -29,10 +29,9 @@ async fn sent(address: &str, head: String, body: Vec<u8>) -> (String, Vec<u8>) {
         socket.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
         let length = body.len();
         let head = format!("{head}host: {address}\r\nconnection: close\r\ncontent-length: {length}\r\n\r\n");
-        socket.write_all(head.as_bytes()).unwrap();
-        socket.write_all(&body).unwrap();
+        // A connection that is not served may be reset, whatever is done with it at that moment.
+        socket.write_all(&[head.as_bytes(), &body].concat()).unwrap_or_default();
         let mut answer = Vec::new();
-        // A connection that is not served may be reset.
         socket.read_to_end(&mut answer).unwrap_or_default();
         answer
     });
