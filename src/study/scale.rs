@@ -176,6 +176,6 @@ mod tests {
 
     #[test]
     fn times_have_three_digits() {
-        assert_eq!([1.5e-7, 2.345e-5, 0.1, 59.0].map(time), ["150 ns", "23.4 µs", "100 ms", "59.0 s"]);
+        assert_eq!([1.5e-7, 2.346e-5, 0.1, 59.0].map(time), ["150 ns", "23.5 µs", "100 ms", "59.0 s"]);
     }
 }

@@ -5,7 +5,7 @@
 //! the support values along it, above by the two points it leads to. Of anything else it is the narrowest bracket of
 //! doubles, and `by` says so.
 
-use crate::geometry::{Core, Placement, Quaternion, Shape};
+use crate::geometry::{Core, Mat3, Placement, Quaternion, Shape, Vec3};
 use crate::narrow_phase::{Accuracy, Bracket, Goal, Solver, Termination, separation};
 
 use super::double_double::{Double2, Vector, difference, dot, length, product, scaled, sum};
@@ -133,8 +133,8 @@ fn of_round(pair: &Pair, normal: [f64; 3]) -> Option<(Double2, Double2)> {
     let apart = difference(to, from);
     let mut normal: Vector = normal.map(Double2::of);
     let mut best: Option<(Double2, Double2)> = None;
-    // The line between the two points is a better direction where bodies are round and near; the best ends are kept.
-    for _ in 0..4 {
+    // Newton's method on the direction: its rest with twice the digits, its step in doubles. The best ends are kept.
+    for _ in 0..5 {
         normal = scaled(normal, Double2::of(1.0).over(length(normal)));
         let on_a = farthest(radii_a, turn_a, normal);
         let on_b = farthest(radii_b, turn_b, scaled(normal, Double2::of(-1.0)));
@@ -143,7 +143,8 @@ fn of_round(pair: &Pair, normal: [f64; 3]) -> Option<(Double2, Double2)> {
         best = Some(best.map_or((below, above), |(low, high)| {
             (if below.high > low.high { below } else { low }, if above.high < high.high { above } else { high })
         }));
-        normal = between;
+        let step = step(pair, [radii_a, radii_b], normal, between);
+        normal = sum(normal, step.map(Double2::of));
     }
     // What rounding may have done, with much to spare: sums of a few dozen terms no larger than the extent.
     let slack = Double2::of(1e-28 * pair.extent);
@@ -151,10 +152,28 @@ fn of_round(pair: &Pair, normal: [f64; 3]) -> Option<(Double2, Double2)> {
     best.map(|(below, above)| (below - radii - slack, above - radii + slack))
 }
 
+/// Where the lower end is greatest, the two points are one above the other: the step toward it from a unit direction. The
+/// derivative of what is beside the direction is minus the curvatures of both bodies and the distance.
+fn step(pair: &Pair, radii: [[f64; 3]; 2], normal: Vector, between: Vector) -> [f64; 3] {
+    let along = dot(normal, between);
+    let beside = difference(between, scaled(normal, along));
+    let [n, beside] = [normal, beside].map(|v| Vec3::from(v.map(|x| x.high)));
+    let mut slope = Mat3::identity() * along.high;
+    for (radii, at) in radii.into_iter().zip([&pair.at_a, &pair.at_b]) {
+        let squares = Mat3::from_diagonal(&Vec3::from(radii.map(|r| r * r)));
+        let form = at.rotation * squares * at.rotation.transpose();
+        let point = form * n;
+        let height = n.dot(&point).sqrt();
+        if height > 0.0 {
+            slope += (form - point * point.transpose() / (height * height)) / height;
+        }
+    }
+    slope.try_inverse().map_or([0.0; 3], |inverse| (inverse * beside).into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Quaternion, Vec3};
     use crate::study::families::{Family, placed};
     use crate::study::random::Random;
 
@@ -168,7 +187,7 @@ mod tests {
                 let found = separation(&pair.a, &pair.b, &pair.at_a, &pair.at_b, &tightest()).unwrap();
                 assert_eq!(truth.by, "double-double");
                 assert!(!truth.is_outside(&found.bracket), "{truth:?} {:?}", found.bracket);
-                assert!(truth.half_width < 1e-16 && truth.half_width >= 0.0, "{truth:?}");
+                assert!(truth.judges(1e-12 * gap) && truth.half_width >= 0.0, "{truth:?}");
                 checked += 1;
             }
         }

@@ -84,7 +84,7 @@ fn extent(node: &Node) -> [f64; 4] {
         Some("label") => 11.0,
         _ => 10.5,
     };
-    let width = 0.6 * size * node.text().unwrap_or_default().chars().count() as f64;
+    let width = 0.56 * size * node.text().unwrap_or_default().chars().count() as f64;
     let (x, y) = (number("x"), number("y"));
     let left = match node.attribute("text-anchor") {
         Some("middle") => x - 0.5 * width,

@@ -70,10 +70,12 @@ fn tighter_tolerances_bring_no_wider_medians() {
     for group in TABLES.iter().flat_map(|name| by_setting(table(name))) {
         for pair in group.windows(2) {
             let [loose, tight] = pair else { unreachable!() };
-            // At the floor of rounding widths differ by what the last rounds happen to be.
+            // At the floor of rounding widths differ by what the last rounds happen to be; from a cache, by what the search before
+            // happened to leave there, which depends on the tolerance, too.
+            let slack = if tight["start"] == "warm" { 1.5 } else { DIGITS };
             let floor = number(loose, "width_floor_m");
             assert!(
-                number(tight, "width_median_m") <= number(loose, "width_median_m").max(floor) * DIGITS,
+                number(tight, "width_median_m") <= number(loose, "width_median_m").max(floor) * slack,
                 "{loose:?} {tight:?}"
             );
             let noise = number(loose, "noise_m");
@@ -84,9 +86,9 @@ fn tighter_tolerances_bring_no_wider_medians() {
                 && loose["compared_with_truth"] == tight["compared_with_truth"]
                 && !capped
             {
-                // An estimate may be better than it has to be; it is never worse than what the tighter bracket asks.
-                let asked = number(tight, "width_asked_m");
-                assert!(tight_error <= loose_error.max(noise).max(asked) * DIGITS, "{loose:?} {tight:?}");
+                // Frank-Wolfe goes back and forth, and its estimate may be good by luck; it is as good as was asked.
+                let asked = if tight["solver"] == "frank_wolfe" { number(tight, "width_asked_m") } else { 0.0 };
+                assert!(tight_error <= loose_error.max(noise).max(asked) * slack, "{loose:?} {tight:?}");
             }
             steps += 1;
         }
