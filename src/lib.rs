@@ -11,4 +11,5 @@ pub mod query;
 pub mod robot;
 pub mod scene;
 pub mod service;
+pub mod study;
 pub mod transports;

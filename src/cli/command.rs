@@ -13,6 +13,7 @@ use super::exit_code::Exit;
 use super::pairs::{self, Pairs};
 use super::serve::{self, Serve};
 use super::states::{self, States};
+use super::study::{self, StudyFlags};
 
 /// How far apart, touching or not, which pair, where: collision and distance queries as proved brackets.
 #[derive(Parser, Debug)]
@@ -36,6 +37,8 @@ enum Command {
     Serve(Serve),
     /// A robot in a table of states: a verdict, a bracket and the nearest pair for each.
     States(States),
+    /// What accuracy costs on this machine: a report with plots, and its numbers as CSV.
+    Study(StudyFlags),
 }
 
 /// Reads the command line, does what it says, and returns how that ended.
@@ -50,6 +53,7 @@ pub fn run() -> ExitCode {
         Command::Pairs(arguments) => pairs::run(&arguments, &mut output),
         Command::Serve(arguments) => return serve::run(&arguments, &mut output).into(),
         Command::States(arguments) => states::run(&arguments, &mut output),
+        Command::Study(arguments) => study::run(&arguments, &mut output),
     };
     let Err(failed) = ended else { return Exit::Success.into() };
     if failed.exit != Exit::Success {

@@ -16,12 +16,12 @@ mod json_field;
 mod own_name;
 mod pairs;
 mod robot_files;
-#[cfg(feature = "grpc")]
 mod sample;
 mod scene_file;
 mod serve;
 mod state_line;
 mod states;
+mod study;
 mod touching;
 mod words;
 

@@ -22,6 +22,7 @@ macro_rules! meshes {
 }
 
 /// What each scene of the tour is called there, and its name in the file.
+#[cfg(feature = "grpc")]
 pub const SCENES: [(&str, &str); 3] =
     [("table top", "table_pick/0012"), ("shelf", "bookshelf_tall/0066"), ("cage", "cage/0059")];
 
