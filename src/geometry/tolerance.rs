@@ -24,3 +24,9 @@ pub const UNSCALED_EXTENT: (f64, f64) = (1e-20, 1e20);
 
 /// Relative width at which a bracket counts as closed when the caller does not say.
 pub const DEFAULT_RELATIVE_TOLERANCE: f64 = 1e-9;
+
+/// By how much a face or an edge may lean against the plane across the normal and still be part of a contact patch, when the caller does not
+/// say; radians, some 0.6 degrees. A body that rests on its face is turned by less: by what a solver lets it sink in (1 mm in 10 cm),
+/// or by poses stored in 32 bits. Smaller, and such a body would be told to stand on an edge or a corner; larger, and a wedge of
+/// a few degrees would be told to lie on its side. It chooses which corners make the patch; what is said of each corner holds for any.
+pub const PATCH_TILT: f64 = 0.01;

@@ -200,7 +200,7 @@ fn witness_errors(found: &Epa, signed_distance: f64, a: &Convex, target: &Target
 }
 
 /// The power of two that brings the extent near 1; 1 for an extent of zero.
-fn scale_of(extent: f64) -> f64 {
+pub(super) fn scale_of(extent: f64) -> f64 {
     if extent == 0.0 {
         return 1.0;
     }

@@ -14,6 +14,7 @@
 //! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
 //! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
 //! [`cast_ray`] is the one for rays: `ray_forms` has formulas with their proofs, `ray_trees` goes down the tree of a mesh.
+//! [`contact_patch`] tells where the faces of a pair touch, given its separation: `patch` has it all.
 
 mod advancement;
 mod approach;
@@ -44,6 +45,7 @@ mod minkowski;
 mod momentum;
 mod outcome;
 mod pair_cache;
+mod patch;
 mod pieces;
 mod polytope;
 mod qp;
@@ -77,6 +79,7 @@ pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
+pub use patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal, contact_patch};
 pub use ray::{RayGoal, RayImpact, cast_ray};
 pub use separation::{NoSeparation, separation, separation_again};
 pub use solver::{Solver, Unclaimed};

@@ -15,6 +15,8 @@ mod many_pieces;
 mod meshes;
 mod oracle;
 mod pair_bytes;
+mod patch_regimes;
+mod patches;
 mod random_pairs;
 mod rays;
 mod samples;

@@ -11,7 +11,7 @@ use clearance::narrow_phase::{Goal, separation};
 use crate::samples::{Random, convex_shapes};
 
 /// Least `direction . x` over the placed shape, by a formula of its own for each kind.
-fn least(shape: &Shape, at: &Placement, direction: Vec3) -> f64 {
+pub fn least(shape: &Shape, at: &Placement, direction: Vec3) -> f64 {
     let d = at.direction_into(direction);
     let across = libm::hypot(d.x, d.y);
     let core = match shape.core() {

@@ -1,0 +1,17 @@
+//! Where two shapes touch, as a polygon: what a pair's witness and normal leave out, paid for only by who asks.
+//!
+//! [`contact_patch`] is the door; `docs/derivations/patch.md` says what is promised. `contact_patch` has what is asked and answered,
+//! `touching_piece` finds the convex pieces that a separation names, `face` (and `round_face`) what of a piece faces the other, `flat_region`
+//! is the geometry in the plane across the normal, `face_height` that above it, `reduction` chooses a few of many corners, and `clipping` puts them together.
+
+mod clipping;
+mod contact_patch;
+mod face;
+mod face_height;
+mod flat_region;
+mod reduction;
+mod round_face;
+mod touching_piece;
+
+pub use clipping::contact_patch;
+pub use contact_patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal};
