@@ -59,8 +59,8 @@ pub mod defaults {
     pub const SHARED_MEMORY_SPIN: u64 = 20;
     /// Seconds that requests under way may take to finish.
     pub const DRAIN_SECONDS: u64 = 10;
-    /// Which log lines are written.
-    pub const LOG: &str = "info";
+    /// Which log lines are written. zenoh tells of every session, and warns of what is meant to be: that nobody is looked for.
+    pub const LOG: &str = "info,zenoh=warn,zenoh::net::routing=error";
     /// How log lines look.
     pub const LOG_FORMAT: super::LogFormat = super::LogFormat::Text;
     /// Scenes that have figures of their own among the metrics, at most.

@@ -3,7 +3,7 @@
 use std::pin::Pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::task::{Context, Poll, Waker};
+use std::task::{Context, Waker};
 use std::time::Duration;
 
 use prost::Message;
@@ -60,7 +60,7 @@ impl Desk {
         session
             .declare_queryable(self.keys.calls())
             .complete(true)
-            .callback(move |query| begin(Box::pin(answer(Arc::clone(&desk), query)), &runtime))
+            .callback(move |query| begin(answer(Arc::clone(&desk), query), &runtime))
             .await
     }
 
@@ -114,17 +114,17 @@ impl Drop for Counted {
 }
 
 /// Works on an answer on this thread, which is one of zenoh's, as far as it goes without waiting; a task does the rest.
-fn begin(mut answering: Pin<Box<Answering>>, runtime: &Handle) {
+fn begin(mut answering: Answering, runtime: &Handle) {
     if answering.is_quick {
         let _guard = runtime.enter();
         answering.here.store(true, Ordering::Relaxed);
-        if answering.as_mut().poll(&mut Context::from_waker(Waker::noop())).is_ready() {
+        if answering.work.as_mut().poll(&mut Context::from_waker(Waker::noop())).is_ready() {
             return;
         }
         answering.here.store(false, Ordering::Relaxed);
     }
     // The first poll in there takes the place of the waker that does nothing.
-    runtime.spawn(answering);
+    runtime.spawn(answering.work);
 }
 
 /// The answer to a query, on its way.
@@ -133,14 +133,6 @@ struct Answering {
     /// Whether the thread is the one on which the query arrived.
     here: Arc<AtomicBool>,
     work: Pin<Box<dyn Future<Output = ()> + Send>>,
-}
-
-impl Future for Answering {
-    type Output = ();
-
-    fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<()> {
-        self.work.as_mut().poll(context)
-    }
 }
 
 fn answer(desk: Arc<Desk>, query: Query) -> Answering {

@@ -42,7 +42,8 @@ pub(super) struct Poses {
     single: Puts,
     /// Where messages for a scene go.
     feeds: BTreeMap<String, Feed>,
-    running: JoinSet<()>,
+    /// Each tells its scene when it ends.
+    running: JoinSet<String>,
     refused: Seldom,
 }
 
@@ -102,7 +103,10 @@ impl Poses {
                     self.feeds.retain(|_, feed| feed.last.elapsed() < IDLE);
                     continue;
                 }
-                Some(_) = self.running.join_next() => continue,
+                Some(ended) = self.running.join_next() => {
+                    self.forget(ended.ok());
+                    continue;
+                }
             };
             // The session is closed.
             let Ok(put) = put else { return };
@@ -141,6 +145,15 @@ impl Poses {
             },
         };
         Ok(Waiting { message, bytes: bytes.len() })
+    }
+
+    /// A feed has ended: names of scenes that are not there must not gather, however many are put to.
+    fn forget(&mut self, scene: Option<String>) {
+        if let Some(scene) = scene
+            && self.feeds.get(&scene).is_some_and(|feed| feed.messages.is_closed())
+        {
+            self.feeds.remove(&scene);
+        }
     }
 
     /// Gives a message to its scene's feed, which begins if there is none.
@@ -191,13 +204,13 @@ fn alone(message: v1::PoseStreamRequest) -> std::result::Result<v1::PoseStreamRe
     }
 }
 
-/// Makes what comes, and tells what became of it, until no more comes or the scene is gone.
+/// Makes what comes, and tells what became of it, until no more comes or the scene is gone; returns the scene's name.
 async fn fed(
     desk: Arc<Desk>,
     session: Session,
     scene: String,
     (sent, bytes): (mpsc::UnboundedReceiver<Waiting>, Arc<AtomicUsize>),
-) {
+) -> String {
     let sent = UnboundedReceiverStream::new(sent).map(|waiting| {
         bytes.fetch_sub(waiting.bytes, Ordering::AcqRel);
         Ok::<_, Infallible>(waiting.message)
@@ -207,10 +220,11 @@ async fn fed(
     loop {
         match made.next().await {
             Ok(Some(told)) => publish(&desk, &session, &key, told.encode_to_vec()),
-            Ok(None) => return,
+            Ok(None) => return scene,
             Err(error) => {
                 tracing::debug!(scene, "a feed of poses has ended: {error}");
-                return refuse(&desk, &session, &scene, &error);
+                refuse(&desk, &session, &scene, &error);
+                return scene;
             }
         }
     }
@@ -232,7 +246,26 @@ fn publish(desk: &Desk, session: &Session, key: &str, message: Vec<u8>) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::config::Config;
     use super::*;
+    use crate::service::Service;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn scenes_that_are_not_there_leave_nothing_behind() {
+        let service = Service::new(&crate::service::Config { threads: 1, ..Default::default() }).unwrap();
+        let config = Config::on_loopback("clearance");
+        let session = zenoh::open(config.of_zenoh(service.limits()).unwrap()).await.unwrap();
+        let desk = Desk::new(&session, &service, &config.keys().unwrap()).await.unwrap();
+        let mut poses = Poses::new(&session, &desk).await.unwrap();
+        for i in 0..100 {
+            let waiting = Waiting { message: v1::PoseStreamRequest::default(), bytes: 0 };
+            poses.feed(&format!("nowhere {i}"), waiting).unwrap();
+        }
+        while let Some(ended) = poses.running.join_next().await {
+            poses.forget(ended.ok());
+        }
+        assert!(poses.feeds.is_empty(), "{:?}", poses.feeds);
+    }
 
     #[test]
     fn a_put_says_nothing_that_is_for_streams() {
