@@ -53,7 +53,8 @@ impl AnswerLine {
     /// The answer to a state.
     #[must_use]
     pub fn of_answer(id: &Value, item: &ItemAnswer, revision: Revision, names: Names) -> Self {
-        let narrow_phase::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = item.cost;
+        // States on the command line have no patches.
+        let narrow_phase::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, .. } = item.cost;
         let distance = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| pair.signed_distance);
         let named = |pair: &Option<PairAnswer>| pair.as_ref().map(|pair| [names.of(&pair.a), names.of(&pair.b)]);
         Self {

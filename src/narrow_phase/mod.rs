@@ -79,7 +79,9 @@ pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
-pub use patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal, contact_patch};
+#[cfg(feature = "effect-patch")]
+pub use patch::contact_patch;
+pub use patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal};
 pub use ray::{RayGoal, RayImpact, cast_ray};
 pub use separation::{NoSeparation, separation, separation_again};
 pub use solver::{Solver, Unclaimed};

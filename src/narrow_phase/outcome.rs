@@ -62,6 +62,10 @@ pub struct Cost {
     pub pairs: u64,
     /// Pairs that doubles left open and a higher precision took over.
     pub escalations: u64,
+    /// Corners that contact patches looked at.
+    pub patch_corners: u64,
+    /// Corners of contact patches that were held against an edge of a face, or against the cut-off.
+    pub patch_cuts: u64,
 }
 
 impl AddAssign for Cost {
@@ -72,6 +76,8 @@ impl AddAssign for Cost {
         self.nodes += other.nodes;
         self.pairs += other.pairs;
         self.escalations += other.escalations;
+        self.patch_corners += other.patch_corners;
+        self.patch_cuts += other.patch_cuts;
     }
 }
 

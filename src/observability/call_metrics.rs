@@ -83,7 +83,8 @@ struct Families {
 }
 
 /// The counters of the kernel that add up what answers cost.
-const COSTS: [&str; 6] = ["supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations"];
+const COSTS: [&str; 8] =
+    ["supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts"];
 
 impl CallMetrics {
     /// Metrics that are part of what `registry` tells.
@@ -167,8 +168,16 @@ impl Observer for CallMetrics {
             families.out_of_time.get_or_create(&WorkLabels { door, rpc }).inc();
         }
         let cost = answered.cost;
-        let counts =
-            [cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs, cost.escalations];
+        let counts = [
+            cost.supports,
+            cost.gjk_iterations,
+            cost.epa_iterations,
+            cost.nodes,
+            cost.pairs,
+            cost.escalations,
+            cost.patch_corners,
+            cost.patch_cuts,
+        ];
         for (total, count) in families.cost.iter().zip(counts) {
             total.inc_by(count);
         }

@@ -60,6 +60,8 @@ impl Observer for SlowQueries {
             nodes = cost.map(|cost| cost.nodes),
             pairs = cost.map(|cost| cost.pairs),
             escalations = cost.map(|cost| cost.escalations),
+            patch_corners = cost.map(|cost| cost.patch_corners),
+            patch_cuts = cost.map(|cost| cost.patch_cuts),
             trace_id = notes.trace(),
             times,
             "slow query"

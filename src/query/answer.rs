@@ -1,7 +1,7 @@
 //! What is answered. Sorted and deterministic: equal questions to equal snapshots get equal bytes.
 
 use crate::geometry::Vec3;
-use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::narrow_phase::{Bracket, ContactPatch, Cost, Termination};
 use crate::scene::{BodyId, Epoch, Revision};
 
 /// What the bracket decides.
@@ -104,6 +104,9 @@ pub struct PairAnswer {
     pub signed_distance: f64,
     /// Where wanted; in an overlap only when its depth was wanted too.
     pub witness: Option<Witness>,
+    /// Where wanted, of a pair that is not proved apart by more than its margin: where the faces of the two convex pieces
+    /// touch that `a` and `b` name. None for a piece that is no single convex one, as of a mesh within a compound.
+    pub patch: Option<Box<ContactPatch>>,
     /// How the work on the pair stopped.
     pub termination: Termination,
 }
@@ -225,5 +228,13 @@ pub enum Refused {
         name: String,
         /// Where it was looked for.
         revision: Revision,
+    },
+    /// An output whose code was left out of this build.
+    #[error("{field}: this build is without the effect `{effect}`")]
+    NotBuilt {
+        /// Where it was wanted.
+        field: &'static str,
+        /// Its name.
+        effect: &'static str,
     },
 }

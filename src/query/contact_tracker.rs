@@ -109,7 +109,8 @@ impl ContactTracker {
     }
 
     fn query(&self) -> PairQuery {
-        let ContactQuestion { threshold, wants, accuracy, solver, filter, stays: _, max_contacts } = &self.question;
+        let ContactQuestion { threshold, wants, accuracy, solver, filter, stays: _, max_patch_points, max_contacts } =
+            &self.question;
         let margin = match threshold {
             Threshold::Touching => 0.0,
             Threshold::Margin(margin) => *margin,
@@ -123,6 +124,7 @@ impl ContactTracker {
             solver: *solver,
             filter: filter.clone(),
             max_pairs: *max_contacts,
+            max_patch_points: *max_patch_points,
         };
         PairQuery { items: Vec::new(), mode: Mode::All, context }
     }

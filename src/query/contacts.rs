@@ -6,7 +6,7 @@
 use super::answer::{PairAnswer, Refused};
 use super::request::{Filter, Wants};
 use crate::limits::LimitExceeded;
-use crate::narrow_phase::{Accuracy, Cost, Solver};
+use crate::narrow_phase::{Accuracy, Cost, MOST_POINTS, Solver};
 use crate::scene::{BodyId, Epoch, Revision};
 
 /// When is a pair in contact?
@@ -24,7 +24,7 @@ pub enum Threshold {
 pub struct ContactQuestion {
     /// When a pair is in contact.
     pub threshold: Threshold,
-    /// What is computed of each pair: `distance`, `witness` and `depth`.
+    /// What is computed of each pair: `distance`, `witness`, `depth` and `patch`.
     pub wants: Wants,
     /// How narrow brackets have to be where `distance` is wanted.
     pub accuracy: Accuracy,
@@ -34,6 +34,8 @@ pub struct ContactQuestion {
     pub filter: Filter,
     /// List what stays, too. Costs time and memory in proportion to the contacts there are.
     pub stays: bool,
+    /// Points of a contact patch at most, from 1 to [`MOST_POINTS`](crate::narrow_phase::MOST_POINTS).
+    pub max_patch_points: usize,
     /// Pairs held at a time, in contact or undecided; with more of them there is no leading on.
     pub max_contacts: usize,
 }
@@ -47,6 +49,7 @@ impl Default for ContactQuestion {
             solver: Solver::Default,
             filter: Filter::default(),
             stays: false,
+            max_patch_points: MOST_POINTS,
             max_contacts: 250_000,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::answer::Refused;
 use super::request::Context;
+use crate::narrow_phase::MOST_POINTS;
 use crate::scene::{Body, BodyId, Snapshot};
 
 /// The filter of a request, checked against the scene.
@@ -15,7 +16,7 @@ impl<'a> Sieve<'a> {
     /// Checks the whole context.
     ///
     /// # Errors
-    /// Numbers that are negative or not finite; groups and bodies that are not in the scene.
+    /// Numbers that are negative or not finite, or beyond their cap; an effect that this build is without; groups and bodies that are not in the scene.
     pub fn new(snapshot: &Snapshot, context: &'a Context) -> Result<Self, Refused> {
         length("context.margin", context.margin)?;
         if let Some(cut_off) = context.cut_off {
@@ -23,6 +24,14 @@ impl<'a> Sieve<'a> {
         }
         length("context.accuracy.absolute", context.accuracy.absolute)?;
         length("context.accuracy.relative", context.accuracy.relative)?;
+        let points = context.max_patch_points;
+        if points == 0 || points > MOST_POINTS {
+            let problem = format!("is {points}, not from 1 to {MOST_POINTS}");
+            return Err(Refused::Invalid { field: "context.max_patch_points".to_owned(), problem });
+        }
+        if context.wants.patch && cfg!(not(feature = "effect-patch")) {
+            return Err(Refused::NotBuilt { field: "context.wants", effect: "patch" });
+        }
         let not_found = |what, name: String| Refused::NotFound { what, name, revision: snapshot.revision() };
         let filter = &context.filter;
         if let Some(group) = filter.groups.iter().find(|g| !snapshot.has_group(g)) {

@@ -20,6 +20,7 @@ mod opponents;
 mod overlap;
 mod overlay;
 mod pairs;
+mod patch;
 mod rays;
 mod request;
 mod robot_parts;

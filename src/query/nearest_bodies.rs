@@ -5,6 +5,7 @@ use super::cast_answer::NearestItem;
 use super::cast_request::NearestBodies;
 use super::item_batch::ItemBatch;
 use super::opponents::Opponents;
+use super::patch::patch;
 use super::request::{Subject, Wants};
 use crate::geometry::{Aabb, Placement, Shape};
 use crate::narrow_phase::{Cost, Depth, Goal, NoSeparation, Separation, separation};
@@ -88,7 +89,11 @@ impl<'a> Neighbours<'a> {
                 stop,
             };
             match separation(asker.shape, &body.shape, &asker.at, &body.placement, &goal) {
-                Ok(separation) => found.take(&self.pair(&separation, asker, body, margin), separation.cost),
+                Ok(separation) => {
+                    let mut cost = separation.cost;
+                    let pair = self.pair(&separation, asker, body, margin, &mut cost);
+                    found.take(&pair, cost);
+                }
                 Err(NoSeparation::Unbounded { .. } | NoSeparation::Empty { .. }) => {}
                 Err(NoSeparation::Unclaimed(unclaimed)) => {
                     problem = problem.take().or(Some(format!("context.solver: {unclaimed}")));
@@ -120,7 +125,7 @@ impl<'a> Neighbours<'a> {
         problem.map_or_else(|| Ok(found.finish()), Err)
     }
 
-    fn pair(&self, found: &Separation, asker: &Asker, body: &Body, margin: f64) -> PairAnswer {
+    fn pair(&self, found: &Separation, asker: &Asker, body: &Body, margin: f64, cost: &mut Cost) -> PairAnswer {
         let own = asker.body.map_or(Side::Query { subshape: 0 }, |body| Side::Body { id: body.id, subshape: 0 });
         let witness = Witness {
             point_on_a: found.point_on_a,
@@ -129,14 +134,18 @@ impl<'a> Neighbours<'a> {
             point_error: found.point_error,
             normal_error: found.normal_error,
         };
+        let verdict = Verdict::of(&found.bracket, margin, found.termination);
+        let placed = [(&*asker.shape, &asker.at), (&*body.shape, &body.placement)];
+        let touches = self.wants.patch && verdict != Verdict::Free;
         // What was asked about is side A, whatever its id: each pair here is one of it and another.
         PairAnswer {
             a: own.with_subshape(found.subshape_a),
             b: Side::Body { id: body.id, subshape: found.subshape_b },
-            verdict: Verdict::of(&found.bracket, margin, found.termination),
+            verdict,
             bracket: found.bracket,
             signed_distance: found.signed_distance,
             witness: self.wants.witness.then_some(witness),
+            patch: if touches { patch(placed, found, margin, &self.request.context, cost) } else { None },
             termination: found.termination,
         }
     }

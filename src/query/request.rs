@@ -1,7 +1,7 @@
 //! What may be asked. Plain data: a transport decodes into these structs once, and nothing below sees bytes again.
 
 use crate::geometry::{Pose, Shape};
-use crate::narrow_phase::{Accuracy, Solver};
+use crate::narrow_phase::{Accuracy, MOST_POINTS, Solver};
 use crate::scene::{BodyId, Revision};
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
@@ -17,19 +17,23 @@ pub struct Wants {
     pub depth: bool,
     /// Every pair that collides or is within the margin, as far as the limit on pairs allows.
     pub pairs: bool,
+    /// Where the faces of pairs touch that are told and not proved apart by more than their margin; includes `witness` and
+    /// `depth`.
+    pub patch: bool,
 }
 
 impl Wants {
     /// The verdict alone.
-    pub const VERDICT: Self = Self { distance: false, witness: false, depth: false, pairs: false };
+    pub const VERDICT: Self = Self { distance: false, witness: false, depth: false, pairs: false, patch: false };
 
     /// Everything there is.
-    pub const ALL: Self = Self { distance: true, witness: true, depth: true, pairs: true };
+    pub const ALL: Self = Self { distance: true, witness: true, depth: true, pairs: true, patch: true };
 
     /// The wants with what they include.
     #[must_use]
     pub fn closed(self) -> Self {
-        Self { distance: self.distance || self.witness || self.depth, ..self }
+        let (witness, depth) = (self.witness || self.patch, self.depth || self.patch);
+        Self { distance: self.distance || witness || depth, witness, depth, ..self }
     }
 }
 
@@ -65,6 +69,8 @@ pub struct Context {
     pub filter: Filter,
     /// Pairs listed per item at most; more set the answer's `truncated`.
     pub max_pairs: usize,
+    /// Points of a contact patch at most, from 1 to [`MOST_POINTS`]; a patch that has more corners says so.
+    pub max_patch_points: usize,
 }
 
 impl Default for Context {
@@ -77,6 +83,7 @@ impl Default for Context {
             solver: Solver::Default,
             filter: Filter::default(),
             max_pairs: 100,
+            max_patch_points: MOST_POINTS,
         }
     }
 }

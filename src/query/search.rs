@@ -4,9 +4,10 @@
 //! found, so the bracket of the minimum is the minimum of the brackets, whatever the order of the walk.
 
 use super::answer::{PairAnswer, Side, Verdict, Witness};
+use super::patch::patch;
 use super::request::{Context, Wants};
 use crate::geometry::{Placement, Shape};
-use crate::narrow_phase::{Bracket, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
+use crate::narrow_phase::{Bracket, ContactPatch, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
 
 /// A placed shape and the side of a pair it stands for. The side's subshape is filled in from what is found.
 #[derive(Clone)]
@@ -184,6 +185,7 @@ impl<'a> Search<'a> {
                 point_error: found.point_error,
                 normal_error: found.normal_error,
             }),
+            patch: self.patch(found, a, b, verdict, margin),
             termination: found.termination,
         };
         self.bracket = union(self.bracket, found.bracket);
@@ -200,6 +202,21 @@ impl<'a> Search<'a> {
         if place.as_ref().is_none_or(|best| comes_first(&answer, best)) {
             *place = Some(answer);
         }
+    }
+
+    /// Where the faces touch, if that is wanted and the pair is one that is told: made while its shapes are at hand.
+    fn patch(
+        &mut self,
+        found: &Separation,
+        a: &Party,
+        b: &Party,
+        verdict: Verdict,
+        margin: f64,
+    ) -> Option<Box<ContactPatch>> {
+        if !self.plan.wants.patch || verdict == Verdict::Free {
+            return None;
+        }
+        patch([(a.shape, a.at), (b.shape, b.at)], found, margin, self.plan.context, &mut self.cost)
     }
 
     /// Keeps a pair for the list; those that the limit will cut off are dropped now and then, so that the list stays short.

@@ -41,6 +41,14 @@ pub enum ServiceError {
         /// Why.
         problem: String,
     },
+    /// An output whose code was left out of the daemon.
+    #[error("{field}: this daemon was built without the effect `{effect}`")]
+    EffectNotBuilt {
+        /// Where it was wanted.
+        field: &'static str,
+        /// Its name.
+        effect: &'static str,
+    },
     /// An idempotency key came again with other edits.
     #[error("idempotency_key {key:?} was used before with other edits")]
     KeyReused {
@@ -165,6 +173,7 @@ impl From<Refused> for ServiceError {
             Refused::Invalid { field, problem } => Self::Invalid { field, problem },
             Refused::Gone { asked, oldest } => Self::RevisionGone { asked, oldest },
             Refused::NotFound { what, name, revision: _ } => Self::NotFound { what, name },
+            Refused::NotBuilt { field, effect } => Self::EffectNotBuilt { field, effect },
         }
     }
 }

@@ -106,7 +106,7 @@ fn scene(model: &str) -> Vec<Call> {
 }
 
 fn wanting(distance: bool, witness: bool, depth: bool, pairs: bool) -> v1::Context {
-    v1::Context { wants: Some(v1::Wants { distance, witness, depth, pairs }), ..context() }
+    v1::Context { wants: Some(v1::Wants { distance, witness, depth, pairs, patch: false }), ..context() }
 }
 
 fn in_bulk(context: v1::Context) -> v1::Context {

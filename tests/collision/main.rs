@@ -15,7 +15,9 @@ mod many_pieces;
 mod meshes;
 mod oracle;
 mod pair_bytes;
+#[cfg(feature = "effect-patch")]
 mod patch_regimes;
+#[cfg(feature = "effect-patch")]
 mod patches;
 mod random_pairs;
 mod rays;

@@ -10,6 +10,7 @@ mod edges;
 mod motions;
 mod moving_scene;
 mod overlays;
+mod patches;
 mod random_motions;
 mod ur5;
 mod workload;

@@ -78,7 +78,17 @@ pub struct ContactPatch {
 }
 
 impl ContactPatch {
+    /// A patch as somebody else found it: its points, the first `corners` of them those of its polygon. What it cost is not told.
+    /// None for more points than there are at most, or more corners than points.
+    #[must_use]
+    pub fn told(normal: Vec3, points: &[ContactPoint], corners: usize, truncated: bool) -> Option<Self> {
+        let points =
+            ArrayVec::try_from(points).ok().filter(|points: &ArrayVec<_, MOST_POINTS>| corners <= points.len())?;
+        Some(Self { normal, truncated, cost: PatchCost::default(), points, corners })
+    }
+
     /// No point at all: the shapes are proved farther apart than the cut-off.
+    #[cfg(feature = "effect-patch")]
     pub(super) fn empty(normal: Vec3) -> Self {
         Self { normal, truncated: false, cost: PatchCost::default(), points: ArrayVec::new(), corners: 0 }
     }

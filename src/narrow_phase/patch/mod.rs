@@ -4,14 +4,22 @@
 //! `touching_piece` finds the convex pieces that a separation names, `face` (and `round_face`) what of a piece faces the other, `flat_region`
 //! is the geometry in the plane across the normal, `face_height` that above it, `reduction` chooses a few of many corners, and `clipping` puts them together.
 
+#[cfg(feature = "effect-patch")]
 mod clipping;
 mod contact_patch;
+#[cfg(feature = "effect-patch")]
 mod face;
+#[cfg(feature = "effect-patch")]
 mod face_height;
+#[cfg(feature = "effect-patch")]
 mod flat_region;
+#[cfg(feature = "effect-patch")]
 mod reduction;
+#[cfg(feature = "effect-patch")]
 mod round_face;
+#[cfg(feature = "effect-patch")]
 mod touching_piece;
 
+#[cfg(feature = "effect-patch")]
 pub use clipping::contact_patch;
 pub use contact_patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal};

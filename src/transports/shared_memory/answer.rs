@@ -132,7 +132,9 @@ fn cut(text: &str) -> &str {
 }
 
 fn framed(frame: &Frame, cost: Cost) -> ResponseHeader {
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = cost;
+    // No batch has contact patches.
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners: _, patch_cuts: _ } =
+        cost;
     ResponseHeader {
         nonce: frame.nonce,
         question: frame.question,

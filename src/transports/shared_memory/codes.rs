@@ -119,15 +119,22 @@ pub(super) fn find_number(find: Find) -> u32 {
 /// The bit of [`super::layout::RequestHeader::wants`] that asks for the sides of the nearest pair.
 pub(super) const WANTS_SIDES: u32 = 16;
 
+/// The bit that would ask for contact patches: a batch has no columns for them, and is refused by name.
+pub(super) const WANTS_PATCH: u32 = 32;
+
 pub(super) fn wants(bits: u32) -> Option<Wants> {
     let has = |bit| bits & bit != 0;
-    let known = bits < 2 * WANTS_SIDES;
-    known.then(|| Wants { distance: has(1), witness: has(2), depth: has(4), pairs: has(8) })
+    let known = bits < 2 * WANTS_PATCH;
+    known.then(|| Wants { distance: has(1), witness: has(2), depth: has(4), pairs: has(8), patch: has(WANTS_PATCH) })
 }
 
 pub(super) fn wants_bits(wants: Wants) -> u32 {
     let bit = |wanted, bit| if wanted { bit } else { 0 };
-    bit(wants.distance, 1) | bit(wants.witness, 2) | bit(wants.depth, 4) | bit(wants.pairs, 8)
+    bit(wants.distance, 1)
+        | bit(wants.witness, 2)
+        | bit(wants.depth, 4)
+        | bit(wants.pairs, 8)
+        | bit(wants.patch, WANTS_PATCH)
 }
 
 #[cfg(all(test, feature = "grpc"))]
@@ -192,6 +199,6 @@ mod tests {
     #[test]
     fn wants_are_bits_and_unknown_bits_are_refused() {
         assert_eq!(wants(wants_bits(Wants::ALL)), Some(Wants::ALL));
-        assert_eq!((wants(WANTS_SIDES), wants(32)), (Some(Wants::VERDICT), None));
+        assert_eq!((wants(WANTS_SIDES), wants(64)), (Some(Wants::VERDICT), None));
     }
 }

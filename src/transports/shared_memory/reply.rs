@@ -127,7 +127,7 @@ impl Reply {
     #[must_use]
     pub fn cost(&self) -> Cost {
         let ResponseHeader { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, .. } = self.header;
-        Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }
+        Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, ..Cost::default() }
     }
 
     fn sections(&self) -> Option<Sections<'_>> {

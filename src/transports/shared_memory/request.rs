@@ -243,6 +243,10 @@ impl Decoder<'_> {
             (accuracy.absolute, accuracy.relative) = (header.accuracy_absolute, header.accuracy_relative);
         }
         let max_pairs = header.max_pairs as usize;
+        if header.wants & codes::WANTS_PATCH != 0 {
+            let problem = "asks for contact patches, which a batch has no columns for: call the rpc by its name";
+            return Err(ServiceError::invalid("context.wants", problem));
+        }
         Ok(Context {
             wants: codes::wants(header.wants).ok_or_else(|| unknown("context.wants", header.wants))?,
             margin: header.margin,
@@ -251,6 +255,7 @@ impl Decoder<'_> {
             solver: codes::solver(header.solver).ok_or_else(|| unknown("context.solver", header.solver))?,
             filter: self.filter()?,
             max_pairs: if self.has(flag::MAX_PAIRS) { max_pairs } else { defaults.max_pairs },
+            max_patch_points: defaults.max_patch_points,
         })
     }
 

@@ -10,6 +10,7 @@ mod decompositions;
 mod fields;
 mod motions;
 mod overlays;
+mod patches;
 mod poses;
 mod query_streams;
 mod questions;

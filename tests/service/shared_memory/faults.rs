@@ -82,7 +82,10 @@ async fn a_client_killed_in_the_middle_leaves_nothing_to_the_next() {
 fn as_a_client_that_asks_much() {
     let (name, root) = (std::env::var(NAME).unwrap(), std::env::var(ROOT).unwrap());
     let mut client = Client::connect(&name, Path::new(&root)).unwrap();
-    let context = Context { wants: clearance::query::Wants::ALL, ..Context::default() };
+    let context = Context {
+        wants: clearance::query::Wants { patch: false, ..clearance::query::Wants::ALL },
+        ..Context::default()
+    };
     let subjects = [clearance::transports::shared_memory::PlainSubject::All; 1000];
     let options = Options { timeout: Duration::from_secs(600), ..Options::default() };
     println!("answered {:?}", client.ask(&target(), Ask::Distance(&subjects, &context), &options));

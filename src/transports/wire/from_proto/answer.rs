@@ -1,7 +1,7 @@
 //! Answers, as a client reads them.
 
 use crate::geometry::Vec3;
-use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
 use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
 use crate::scene::{BodyId, Epoch, Revision};
 use crate::transports::wire::v1;
@@ -55,6 +55,7 @@ pub(super) fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
         bracket: Bracket { lower: bracket.lower, upper: bracket.upper },
         signed_distance: pair.signed_distance,
         witness: pair.witness.as_ref().map(witness).transpose()?,
+        patch: pair.patch.as_ref().map(patch).transpose()?.map(Box::new),
         termination: termination(pair.termination)?,
     })
 }
@@ -103,19 +104,35 @@ fn termination(number: i32) -> Result<Termination, NotAnAnswer> {
     }
 }
 
+fn vec3(v: Option<v1::Vec3>, field: &'static str) -> Result<Vec3, NotAnAnswer> {
+    v.map(|v| Vec3::new(v.x, v.y, v.z)).ok_or(NotAnAnswer(field))
+}
+
+fn patch(patch: &v1::ContactPatch) -> Result<ContactPatch, NotAnAnswer> {
+    let point = |point: &v1::ContactPoint| {
+        Ok(ContactPoint {
+            point_on_a: vec3(point.point_on_a, "patch")?,
+            point_on_b: vec3(point.point_on_b, "patch")?,
+            signed_distance: point.signed_distance,
+        })
+    };
+    let points: Vec<ContactPoint> = patch.points.iter().map(point).collect::<Result<_, _>>()?;
+    let normal = vec3(patch.normal, "patch")?;
+    ContactPatch::told(normal, &points, patch.corners as usize, patch.truncated).ok_or(NotAnAnswer("patch"))
+}
+
 fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
-    let vec3 = |v: &Option<v1::Vec3>| v.map(|v| Vec3::new(v.x, v.y, v.z)).ok_or(NotAnAnswer("witness"));
     Ok(Witness {
-        point_on_a: vec3(&witness.point_on_a)?,
-        point_on_b: vec3(&witness.point_on_b)?,
-        normal: vec3(&witness.normal)?,
+        point_on_a: vec3(witness.point_on_a, "witness")?,
+        point_on_b: vec3(witness.point_on_b, "witness")?,
+        normal: vec3(witness.normal, "witness")?,
         point_error: witness.point_error,
         normal_error: witness.normal_error,
     })
 }
 
 pub(super) fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
-    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } =
+    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
         cost.ok_or(NotAnAnswer("cost"))?;
-    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations })
+    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts })
 }

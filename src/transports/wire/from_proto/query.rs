@@ -66,7 +66,7 @@ pub fn answer_form(context: Option<&v1::Context>) -> Result<AnswerForm, ServiceE
         Ok(v1::AnswerForm::Unspecified | v1::AnswerForm::Items) => Ok(AnswerForm::Items),
         Ok(v1::AnswerForm::Bulk) => {
             let wants = context.and_then(|context| context.wants).unwrap_or_default();
-            Ok(AnswerForm::Bulk { brackets: wants.distance || wants.witness || wants.depth })
+            Ok(AnswerForm::Bulk { brackets: self::wants(&wants).closed().distance })
         }
         Err(_) => Err(unknown_value(&Path::root("context").field("answer_form"), number)),
     }
@@ -155,14 +155,20 @@ pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Res
         (accuracy.absolute, accuracy.relative) = (asked.absolute, asked.relative);
     }
     Ok(Context {
-        wants: Wants { distance: wants.distance, witness: wants.witness, depth: wants.depth, pairs: wants.pairs },
+        wants: self::wants(&wants),
         margin: context.margin,
         cut_off: context.cut_off,
         accuracy,
         solver: solver(context.solver)?,
         filter: filter(&path.field("filter"), context.filter.as_ref(), snapshot)?,
         max_pairs: context.max_pairs.map_or(defaults.max_pairs, |pairs| pairs as usize),
+        max_patch_points: context.max_patch_points.map_or(defaults.max_patch_points, |points| points as usize),
     })
+}
+
+fn wants(wants: &v1::Wants) -> Wants {
+    let v1::Wants { distance, witness, depth, pairs, patch } = *wants;
+    Wants { distance, witness, depth, pairs, patch }
 }
 
 fn solver(number: i32) -> Result<Solver, ServiceError> {

@@ -2,7 +2,7 @@
 
 use super::geometry::vec3;
 use super::{count, little_endian};
-use crate::narrow_phase::{Bracket, Cost, Termination};
+use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
 use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness, World, Worlds};
 use crate::scene::BodyId;
 use crate::transports::wire::from_proto::AnswerForm;
@@ -109,6 +109,21 @@ pub(super) fn pair(pair: &PairAnswer) -> v1::PairAnswer {
         signed_distance: pair.signed_distance,
         witness: pair.witness.as_ref().map(witness),
         termination: termination(pair.termination).into(),
+        patch: pair.patch.as_deref().map(patch),
+    }
+}
+
+fn patch(patch: &ContactPatch) -> v1::ContactPatch {
+    let point = |point: &ContactPoint| v1::ContactPoint {
+        point_on_a: Some(vec3(point.point_on_a)),
+        point_on_b: Some(vec3(point.point_on_b)),
+        signed_distance: point.signed_distance,
+    };
+    v1::ContactPatch {
+        normal: Some(vec3(patch.normal)),
+        points: patch.points().iter().map(point).collect(),
+        corners: count(patch.polygon().len()),
+        truncated: patch.truncated,
     }
 }
 
@@ -170,6 +185,6 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
 }
 
 pub(super) fn cost(cost: Cost) -> v1::Cost {
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations } = cost;
-    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } = cost;
+    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
 }

@@ -67,6 +67,7 @@ fn code_and_reason(error: &ServiceError) -> (u8, ErrorReason) {
         ServiceError::NotFound { .. } => (code::NOT_FOUND, ErrorReason::NotFound),
         ServiceError::AlreadyExists { .. } => (code::ALREADY_EXISTS, ErrorReason::AlreadyExists),
         ServiceError::EditRefused { .. } => (code::FAILED_PRECONDITION, ErrorReason::EditRefused),
+        ServiceError::EffectNotBuilt { .. } => (code::FAILED_PRECONDITION, ErrorReason::EffectNotBuilt),
         ServiceError::KeyReused { .. } => (code::INVALID_ARGUMENT, ErrorReason::KeyReused),
         ServiceError::WrongEpoch { .. } => (code::FAILED_PRECONDITION, ErrorReason::WrongEpoch),
         ServiceError::RevisionMovedOn { .. } => (code::ABORTED, ErrorReason::RevisionMovedOn),
@@ -84,6 +85,9 @@ fn details(error: &ServiceError) -> Vec<(&'static str, String)> {
     match error {
         ServiceError::Invalid { field, .. } | ServiceError::EditRefused { field, .. } => {
             vec![("clearance-field", field.clone())]
+        }
+        ServiceError::EffectNotBuilt { field, effect } => {
+            vec![("clearance-field", (*field).to_owned()), ("clearance-effect", (*effect).to_owned())]
         }
         ServiceError::WrongEpoch { current, .. } => vec![("clearance-epoch", current.to_string())],
         ServiceError::RevisionMovedOn { current, .. } | ServiceError::RevisionNotYet { current, .. } => {

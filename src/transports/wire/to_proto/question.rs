@@ -44,17 +44,18 @@ pub(super) fn doubles(numbers: &[f64]) -> v1::Doubles {
 }
 
 pub(super) fn context(target: &Target, context: &Context) -> v1::Context {
-    let Wants { distance, witness, depth, pairs } = context.wants;
+    let Wants { distance, witness, depth, pairs, patch } = context.wants;
     let (absolute, relative) = (context.accuracy.absolute, context.accuracy.relative);
     v1::Context {
         scene: target.scene.clone(),
         revision: Some(revision_rule(target.revision)),
-        wants: Some(v1::Wants { distance, witness, depth, pairs }),
+        wants: Some(v1::Wants { distance, witness, depth, pairs, patch }),
         margin: context.margin,
         cut_off: context.cut_off,
         accuracy: Some(v1::Accuracy { absolute, relative }),
         filter: Some(filter(&context.filter)),
         max_pairs: Some(count(context.max_pairs)),
+        max_patch_points: Some(count(context.max_patch_points)),
         time_budget: None,
         answer_form: v1::AnswerForm::Items.into(),
         solver: solver(context.solver).into(),
