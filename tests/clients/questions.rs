@@ -166,6 +166,7 @@ fn of_robots() -> Vec<Call> {
         ask("Queries/CheckStates", of_states(&STATES, in_bulk(wanting(true, false, false, false)))),
         ask("Queries/CheckStates", stop(of_states(&STATES, in_bulk(context())))),
         ask("Queries/CheckStates", of_states(&STATES[..2], supposed())),
+        ask("Queries/CheckStates", of_states(&STATES[..2], patches(0.05))),
         ask("Queries/CheckMotions", motions(context())),
         ask("Queries/CheckMotions", motions(in_bulk(context()))),
         ask("Queries/CheckPath", path(context())),
@@ -194,7 +195,14 @@ fn of_bodies() -> Vec<Call> {
         ask("Queries/Distance", asking(solver(v1::Solver::GjkNesterov), subjects())),
         ask("Queries/Distance", asking(solver(v1::Solver::Exact), vec![probe.clone()])),
         ask("Queries/Clearance", near),
+        ask("Queries/Collide", v1::CollideRequest { context: Some(patches(0.6)), ..collide(subjects()) }),
     ]
+}
+
+/// Where faces touch, or are nearer than `margin`; no more than six points each.
+fn patches(margin: f64) -> v1::Context {
+    let wants = v1::Wants { pairs: true, patch: true, ..v1::Wants::default() };
+    v1::Context { wants: Some(wants), margin, max_patch_points: Some(6), ..context() }
 }
 
 fn of_casts() -> Vec<Call> {

@@ -14,8 +14,10 @@ using Queries = v1::Queries::Stub;
 v1::Wants wants_of(Want want) {
   v1::Wants wants;
   wants.set_distance(want != Want::verdict);
-  wants.set_depth(want == Want::depth || want == Want::witness);
-  wants.set_witness(want == Want::witness);
+  const bool points = want == Want::witness || want == Want::patch;
+  wants.set_depth(want == Want::depth || points);
+  wants.set_witness(points);
+  wants.set_patch(want == Want::patch);
   return wants;
 }
 

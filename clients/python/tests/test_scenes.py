@@ -44,6 +44,25 @@ class Scenes(DaemonTest):
         contents = self.scene.contents()
         self.assertEqual((len(contents.bodies), contents.body_count, contents.bodies_left), (300, 300, False))
 
+    def test_a_patch_is_where_faces_touch(self) -> None:
+        self.scene.apply(
+            clearance.add_body("table", clearance.box([1, 1, 0.5]), clearance.pose([0, 0, -0.5])),
+            clearance.add_body("book", clearance.box([0.1, 0.2, 0.02]), clearance.pose([0.5, 0, 0.019])),
+            clearance.add_body("lamp", clearance.sphere(0.1), clearance.pose([0, 0, 2])),
+        )
+        (answer,) = self.scene.collide(want="patch")
+        (pair,) = answer.pairs
+        patch = pair.patch
+        self.assertEqual((patch.corners, patch.points_on_a.shape, patch.truncated), (4, (4, 3), False))
+        np.testing.assert_allclose(patch.normal, [0, 0, 1], atol=1e-9)
+        np.testing.assert_allclose(patch.signed_distances, -1e-3, atol=1e-9)
+        np.testing.assert_allclose(np.sort(patch.points_on_a[:, 0]), [0.4, 0.4, 0.6, 0.6], atol=1e-9)
+        np.testing.assert_allclose(patch.points_on_b - patch.points_on_a, [[0, 0, -1e-3]] * 4, atol=1e-9)
+        self.assertGreater(answer.cost.patch_corners, 0)
+        (plain,) = self.scene.collide(want="witness")
+        self.assertIsNone(plain.pairs[0].patch)
+        self.assertEqual(plain.cost.patch_corners, 0)
+
     def test_distance_gives_bracket_points_and_normal(self) -> None:
         self.scene.apply(
             clearance.add_body("a", clearance.sphere(1.0)),

@@ -10,9 +10,9 @@ type ContextInit = MessageInitShape<typeof v1.ContextSchema>;
 
 /**
  * What an answer has beside its verdicts: nothing, and the quickest; brackets of the nearest pairs; tight ones of pairs that
- * overlap as well; points and normals as well.
+ * overlap as well; points and normals as well; where faces touch as well.
  */
-export type Want = "verdict" | "distance" | "depth" | "witness";
+export type Want = "verdict" | "distance" | "depth" | "witness" | "patch";
 
 /** How long a call may take, and what stops it. */
 export type Call = Pick<CallOptions, "timeoutMs" | "signal">;
@@ -46,11 +46,12 @@ export interface Question extends Call {
 /** The context of a request. */
 export function contextOf(scene: string, question: Question, byDefault: Want, more: Partial<ContextInit> = {}): ContextInit {
   const want = question.want ?? byDefault;
+  const points = want === "witness" || want === "patch";
   const context: Record<string, unknown> = {
     ...question.context,
     ...more,
     scene,
-    wants: { distance: want !== "verdict", depth: want === "depth" || want === "witness", witness: want === "witness", ...more.wants },
+    wants: { distance: want !== "verdict", depth: want === "depth" || points, witness: points, patch: want === "patch", ...more.wants },
     margin: question.margin,
     cutOff: question.cutOff,
     timeBudget: question.timeBudget,

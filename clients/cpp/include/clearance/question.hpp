@@ -22,6 +22,8 @@ enum class Want {
   depth,
   /// Points and normals as well.
   witness,
+  /// As well, where faces touch: `PairAnswer.patch` of pairs that are not proved apart by more than their margin.
+  patch,
 };
 
 /// Words that can be left out, one after the other: `Question().want(Want::depth).at_least(revision)`.

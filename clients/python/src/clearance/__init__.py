@@ -7,7 +7,7 @@
 Metres, radians, right-handed frames. Arrays in and out are numpy's. Errors are :class:`ClearanceError`.
 """
 
-from .answers import Applied, Bracket, Cost, ItemAnswer, ItemAnswers, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
+from .answers import Applied, Bracket, ContactPatch, Cost, ItemAnswer, ItemAnswers, MeshCard, PairAnswer, Side, StatesAnswer, Verdict
 from .casts import (
     CastHit,
     CastItem,
@@ -88,6 +88,7 @@ __all__ = [
     "DEFAULT_ADDRESS",
     "Conflict",
     "ContactEvent",
+    "ContactPatch",
     "ContactKind",
     "ContactState",
     "ContactStep",

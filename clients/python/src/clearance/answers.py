@@ -68,10 +68,21 @@ class Cost:
     nodes: int
     pairs: int
     escalations: int
+    patch_corners: int
+    patch_cuts: int
 
     @classmethod
     def of(cls, cost: messages.Cost) -> Cost:
-        return cls(cost.supports, cost.gjk_iterations, cost.epa_iterations, cost.nodes, cost.pairs, cost.escalations)
+        return cls(
+            cost.supports,
+            cost.gjk_iterations,
+            cost.epa_iterations,
+            cost.nodes,
+            cost.pairs,
+            cost.escalations,
+            cost.patch_corners,
+            cost.patch_cuts,
+        )
 
 
 @dataclass(frozen=True)
@@ -104,6 +115,33 @@ class Bracket:
 
 
 @dataclass(frozen=True)
+class ContactPatch:
+    """Where the faces of a pair touch, or are nearest. n points, world frame, metres."""
+
+    #: Unit vector from A to B.
+    normal: NDArray[np.float64]
+    #: Shape (n, 3): on the face of A, and across from it on that of B.
+    points_on_a: NDArray[np.float64]
+    points_on_b: NDArray[np.float64]
+    #: Shape (n,): along the normal; negative: how far the faces overlap at that point.
+    signed_distances: NDArray[np.float64]
+    #: The first so many points are the corners of a convex polygon, counter-clockwise as seen from the normal's tip.
+    corners: int
+    #: There are fewer corners than there should be.
+    truncated: bool
+
+    @classmethod
+    def of(cls, patch: messages.ContactPatch) -> ContactPatch:
+        def table(side: str) -> NDArray[np.float64]:
+            return np.array([_array(getattr(point, side)) for point in patch.points]).reshape(-1, 3)
+
+        distances = np.array([point.signed_distance for point in patch.points])
+        return cls(
+            _array(patch.normal), table("point_on_a"), table("point_on_b"), distances, patch.corners, patch.truncated
+        )
+
+
+@dataclass(frozen=True)
 class PairAnswer:
     """What is known about one pair."""
 
@@ -124,6 +162,8 @@ class PairAnswer:
     normal_error: Optional[float]
     #: How the work stopped, for example `CONVERGED`.
     termination: str
+    #: Where the faces touch; None unless wanted, and of a pair that is proved apart by more than its margin.
+    patch: Optional[ContactPatch]
 
     @classmethod
     def of(cls, pair: messages.PairAnswer) -> PairAnswer:
@@ -140,6 +180,7 @@ class PairAnswer:
             point_error=witness.point_error if witness else None,
             normal_error=witness.normal_error if witness else None,
             termination=messages.Termination.Name(pair.termination).removeprefix("TERMINATION_"),
+            patch=ContactPatch.of(pair.patch) if pair.HasField("patch") else None,
         )
 
 

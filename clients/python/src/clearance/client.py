@@ -762,6 +762,7 @@ def _wants(want: str) -> query.Wants:
         "distance": query.Wants(distance=True),
         "witness": query.Wants(distance=True, witness=True, depth=True),
         "depth": query.Wants(distance=True, depth=True),
+        "patch": query.Wants(distance=True, witness=True, depth=True, patch=True),
     }
     if want not in known:
         raise ValueError(f"want: is {want!r}, known are {', '.join(known)}")

@@ -19,7 +19,7 @@ import type { Message } from "@bufbuild/protobuf";
  * Describes the file clearance/v1/query.proto.
  */
 export const file_clearance_v1_query: GenFile = /*@__PURE__*/
-  fileDesc("ChhjbGVhcmFuY2UvdjEvcXVlcnkucHJvdG8SDGNsZWFyYW5jZS52MSKDAQoMUmV2aXNpb25SdWxlEhIKBWVwb2NoGAEgASgESAGIAQESJgoGbGF0ZXN0GAIgASgLMhQuY2xlYXJhbmNlLnYxLkxhdGVzdEgAEhEKB2V4YWN0bHkYAyABKARIABISCghhdF9sZWFzdBgEIAEoBEgAQgYKBHJ1bGVCCAoGX2Vwb2NoIggKBkxhdGVzdCJICgVXYW50cxIQCghkaXN0YW5jZRgBIAEoCBIPCgd3aXRuZXNzGAIgASgIEg0KBWRlcHRoGAMgASgIEg0KBXBhaXJzGAQgASgIIi4KCEFjY3VyYWN5EhAKCGFic29sdXRlGAEgASgBEhAKCHJlbGF0aXZlGAIgASgBIqEBCgZGaWx0ZXISDgoGZ3JvdXBzGAEgAygJEiUKBmlnbm9yZRgCIAMoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiQKHGRpc3JlZ2FyZF9hbGxvd2VkX2NvbGxpc2lvbnMYAyABKAgSEwoGbGF5ZXJzGAQgASgHSACIAQESEQoEbWFzaxgFIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2sigQQKB0NvbnRleHQSDQoFc2NlbmUYASABKAkSLAoIcmV2aXNpb24YAiABKAsyGi5jbGVhcmFuY2UudjEuUmV2aXNpb25SdWxlEiIKBXdhbnRzGAMgASgLMhMuY2xlYXJhbmNlLnYxLldhbnRzEg4KBm1hcmdpbhgEIAEoARIUCgdjdXRfb2ZmGAUgASgBSACIAQESKAoIYWNjdXJhY3kYBiABKAsyFi5jbGVhcmFuY2UudjEuQWNjdXJhY3kSJAoGZmlsdGVyGAcgASgLMhQuY2xlYXJhbmNlLnYxLkZpbHRlchIWCgltYXhfcGFpcnMYCCABKA1IAYgBARIYCgt0aW1lX2J1ZGdldBgJIAEoAUgCiAEBEi0KC2Fuc3dlcl9mb3JtGAogASgOMhguY2xlYXJhbmNlLnYxLkFuc3dlckZvcm0SJAoGc29sdmVyGAsgASgOMhQuY2xlYXJhbmNlLnYxLlNvbHZlchImCgdvdmVybGF5GAwgASgLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSKwoMYWx0ZXJuYXRpdmVzGA0gAygLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSGQoRaXRlbV9hbHRlcm5hdGl2ZXMYDiADKA1CCgoIX2N1dF9vZmZCDAoKX21heF9wYWlyc0IOCgxfdGltZV9idWRnZXQilwEKEkNoZWNrU3RhdGVzUmVxdWVzdBImCgdjb250ZXh0GAEgASgLMhUuY2xlYXJhbmNlLnYxLkNvbnRleHQSDQoFcm9ib3QYAiABKAkSKAoJcG9zaXRpb25zGAMgASgLMhUuY2xlYXJhbmNlLnYxLkRvdWJsZXMSIAoEbW9kZRgEIAEoDjISLmNsZWFyYW5jZS52MS5Nb2RlIsYBCgdTdWJqZWN0EisKCWFsbF9wYWlycxgBIAEoCzIWLmNsZWFyYW5jZS52MS5BbGxQYWlyc0gAEiUKBGJvZHkYAiABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZkgAEioKBXNoYXBlGAMgASgLMhkuY2xlYXJhbmNlLnYxLlBsYWNlZFNoYXBlSAASMwoNY2hhbmdlZF9zaW5jZRgEIAEoCzIaLmNsZWFyYW5jZS52MS5DaGFuZ2VkU2luY2VIAEIGCgRraW5kIgoKCEFsbFBhaXJzIiAKDENoYW5nZWRTaW5jZRIQCghyZXZpc2lvbhgBIAEoBCJTCgtQbGFjZWRTaGFwZRIiCgVzaGFwZRgBIAEoCzITLmNsZWFyYW5jZS52MS5TaGFwZRIgCgRwb3NlGAIgASgLMhIuY2xlYXJhbmNlLnYxLlBvc2UigAEKDkNvbGxpZGVSZXF1ZXN0EiYKB2NvbnRleHQYASABKAsyFS5jbGVhcmFuY2UudjEuQ29udGV4dBIkCgVpdGVtcxgCIAMoCzIVLmNsZWFyYW5jZS52MS5TdWJqZWN0EiAKBG1vZGUYAyABKA4yEi5jbGVhcmFuY2UudjEuTW9kZSKBAQoPRGlzdGFuY2VSZXF1ZXN0EiYKB2NvbnRleHQYASABKAsyFS5jbGVhcmFuY2UudjEuQ29udGV4dBIkCgVpdGVtcxgCIAMoCzIVLmNsZWFyYW5jZS52MS5TdWJqZWN0EiAKBG1vZGUYAyABKA4yEi5jbGVhcmFuY2UudjEuTW9kZSInCgdCcmFja2V0Eg0KBWxvd2VyGAEgASgBEg0KBXVwcGVyGAIgASgBIogBCgRTaWRlEiYKBGxpbmsYASABKAsyFi5jbGVhcmFuY2UudjEuTGlua1NpZGVIABIoCgVxdWVyeRgCIAEoCzIXLmNsZWFyYW5jZS52MS5RdWVyeVNpZGVIABImCgRib2R5GAMgASgLMhYuY2xlYXJhbmNlLnYxLkJvZHlTaWRlSABCBgoEa2luZCI5CghMaW5rU2lkZRIMCgRsaW5rGAEgASgNEg0KBXNoYXBlGAIgASgNEhAKCHN1YnNoYXBlGAMgASgNIh0KCVF1ZXJ5U2lkZRIQCghzdWJzaGFwZRgBIAEoDSIoCghCb2R5U2lkZRIKCgJpZBgBIAEoBBIQCghzdWJzaGFwZRgCIAEoDSKoAQoHV2l0bmVzcxImCgpwb2ludF9vbl9hGAEgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSJgoKcG9pbnRfb25fYhgCIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEiIKBm5vcm1hbBgDIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEhMKC3BvaW50X2Vycm9yGAQgASgBEhQKDG5vcm1hbF9lcnJvchgFIAEoASK/AgoKUGFpckFuc3dlchIdCgFhGAEgASgLMhIuY2xlYXJhbmNlLnYxLlNpZGUSHQoBYhgCIAEoCzISLmNsZWFyYW5jZS52MS5TaWRlEiYKB3ZlcmRpY3QYAyABKA4yFS5jbGVhcmFuY2UudjEuVmVyZGljdBIyCg1pbmRldGVybWluYWN5GAQgASgOMhsuY2xlYXJhbmNlLnYxLkluZGV0ZXJtaW5hY3kSJgoHYnJhY2tldBgFIAEoCzIVLmNsZWFyYW5jZS52MS5CcmFja2V0EhcKD3NpZ25lZF9kaXN0YW5jZRgGIAEoARImCgd3aXRuZXNzGAcgASgLMhUuY2xlYXJhbmNlLnYxLldpdG5lc3MSLgoLdGVybWluYXRpb24YCCABKA4yGS5jbGVhcmFuY2UudjEuVGVybWluYXRpb24iewoEQ29zdBIQCghzdXBwb3J0cxgBIAEoBBIWCg5namtfaXRlcmF0aW9ucxgCIAEoBBIWCg5lcGFfaXRlcmF0aW9ucxgDIAEoBBINCgVub2RlcxgEIAEoBBINCgVwYWlycxgFIAEoBBITCgtlc2NhbGF0aW9ucxgGIAEoBCLjAgoKSXRlbUFuc3dlchImCgd2ZXJkaWN0GAEgASgOMhUuY2xlYXJhbmNlLnYxLlZlcmRpY3QSMgoNaW5kZXRlcm1pbmFjeRgCIAEoDjIbLmNsZWFyYW5jZS52MS5JbmRldGVybWluYWN5EikKB25lYXJlc3QYAyABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIuCgxuZWFyZXN0X3NlbGYYBCABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIvCg1uZWFyZXN0X3NjZW5lGAUgASgLMhguY2xlYXJhbmNlLnYxLlBhaXJBbnN3ZXISJwoFcGFpcnMYBiADKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIRCgl0cnVuY2F0ZWQYByABKAgSDwoHcHJvYmxlbRgIIAEoCRIgCgRjb3N0GAkgASgLMhIuY2xlYXJhbmNlLnYxLkNvc3Qi9gEKCkJ1bGtBbnN3ZXISEAoIdmVyZGljdHMYASABKAwSFwoPaW5kZXRlcm1pbmFjaWVzGAIgASgMEisKB25lYXJlc3QYAyABKAsyGi5jbGVhcmFuY2UudjEuQnVsa0JyYWNrZXRzEjAKDG5lYXJlc3Rfc2VsZhgEIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSMQoNbmVhcmVzdF9zY2VuZRgFIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSKwoIcHJvYmxlbXMYBiADKAsyGS5jbGVhcmFuY2UudjEuQnVsa1Byb2JsZW0iRQoMQnVsa0JyYWNrZXRzEg0KBWxvd2VyGAEgASgMEg0KBXVwcGVyGAIgASgMEhcKD3NpZ25lZF9kaXN0YW5jZRgDIAEoDCIsCgtCdWxrUHJvYmxlbRIMCgRpdGVtGAEgASgNEg8KB3Byb2JsZW0YAiABKAkiiAIKBkFuc3dlchINCgVlcG9jaBgBIAEoBBIQCghyZXZpc2lvbhgCIAEoBBInCgVpdGVtcxgDIAMoCzIYLmNsZWFyYW5jZS52MS5JdGVtQW5zd2VyEiYKBGJ1bGsYBCABKAsyGC5jbGVhcmFuY2UudjEuQnVsa0Fuc3dlchIXCgpzdG9wcGVkX2F0GAUgASgNSACIAQESEwoLb3V0X29mX3RpbWUYBiABKAgSIAoEY29zdBgHIAEoCzISLmNsZWFyYW5jZS52MS5Db3N0Ei0KDGFkZGVkX2JvZGllcxgIIAMoCzIXLmNsZWFyYW5jZS52MS5BZGRlZEJvZHlCDQoLX3N0b3BwZWRfYXQq4QEKBlNvbHZlchIWChJTT0xWRVJfVU5TUEVDSUZJRUQQABISCg5TT0xWRVJfREVGQVVMVBABEhYKElNPTFZFUl9GUkFOS19XT0xGRRACEg4KClNPTFZFUl9HSksQAxIVChFTT0xWRVJfR0pLX1BPTFlBSxAEEhcKE1NPTFZFUl9HSktfTkVTVEVST1YQBRIiCh5TT0xWRVJfR0pLX05FU1RFUk9WX05PUk1BTElTRUQQBhIOCgpTT0xWRVJfU0FUEAcSDQoJU09MVkVSX1FQEAgSEAoMU09MVkVSX0VYQUNUEAkqVgoKQW5zd2VyRm9ybRIbChdBTlNXRVJfRk9STV9VTlNQRUNJRklFRBAAEhUKEUFOU1dFUl9GT1JNX0lURU1TEAESFAoQQU5TV0VSX0ZPUk1fQlVMSxACKkIKBE1vZGUSFAoQTU9ERV9VTlNQRUNJRklFRBAAEgwKCE1PREVfQUxMEAESFgoSTU9ERV9TVE9QX0FUX0ZJUlNUEAIqqgEKB1ZlcmRpY3QSFwoTVkVSRElDVF9VTlNQRUNJRklFRBAAEhAKDFZFUkRJQ1RfRlJFRRABEhIKDlZFUkRJQ1RfTUFSR0lOEAISFQoRVkVSRElDVF9DT0xMSVNJT04QAxIZChVWRVJESUNUX0lOREVURVJNSU5BVEUQBBITCg9WRVJESUNUX05PVF9SVU4QBRIZChVWRVJESUNUX0lOVkFMSURfSU5QVVQQBiqpAQoNSW5kZXRlcm1pbmFjeRIdChlJTkRFVEVSTUlOQUNZX1VOU1BFQ0lGSUVEEAASGgoWSU5ERVRFUk1JTkFDWV9ST1VORElORxABEiEKHUlOREVURVJNSU5BQ1lfSVRFUkFUSU9OX0xJTUlUEAISHAoYSU5ERVRFUk1JTkFDWV9USU1FX0xJTUlUEAMSHAoYSU5ERVRFUk1JTkFDWV9SRVNPTFVUSU9OEAQq7wEKC1Rlcm1pbmF0aW9uEhsKF1RFUk1JTkFUSU9OX1VOU1BFQ0lGSUVEEAASGwoXVEVSTUlOQVRJT05fQ0xPU0VEX0ZPUk0QARIZChVURVJNSU5BVElPTl9DT05WRVJHRUQQAhIXChNURVJNSU5BVElPTl9ERUNJREVEEAMSHgoaVEVSTUlOQVRJT05fUk9VTkRJTkdfRkxPT1IQBBIfChtURVJNSU5BVElPTl9JVEVSQVRJT05fTElNSVQQBRIaChZURVJNSU5BVElPTl9USU1FX0xJTUlUEAYSFQoRVEVSTUlOQVRJT05fRVhBQ1QQB2IGcHJvdG8z", [file_clearance_v1_geometry, file_clearance_v1_overlay, file_clearance_v1_scene]);
+  fileDesc("ChhjbGVhcmFuY2UvdjEvcXVlcnkucHJvdG8SDGNsZWFyYW5jZS52MSKDAQoMUmV2aXNpb25SdWxlEhIKBWVwb2NoGAEgASgESAGIAQESJgoGbGF0ZXN0GAIgASgLMhQuY2xlYXJhbmNlLnYxLkxhdGVzdEgAEhEKB2V4YWN0bHkYAyABKARIABISCghhdF9sZWFzdBgEIAEoBEgAQgYKBHJ1bGVCCAoGX2Vwb2NoIggKBkxhdGVzdCJXCgVXYW50cxIQCghkaXN0YW5jZRgBIAEoCBIPCgd3aXRuZXNzGAIgASgIEg0KBWRlcHRoGAMgASgIEg0KBXBhaXJzGAQgASgIEg0KBXBhdGNoGAUgASgIIi4KCEFjY3VyYWN5EhAKCGFic29sdXRlGAEgASgBEhAKCHJlbGF0aXZlGAIgASgBIqEBCgZGaWx0ZXISDgoGZ3JvdXBzGAEgAygJEiUKBmlnbm9yZRgCIAMoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiQKHGRpc3JlZ2FyZF9hbGxvd2VkX2NvbGxpc2lvbnMYAyABKAgSEwoGbGF5ZXJzGAQgASgHSACIAQESEQoEbWFzaxgFIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2sitQQKB0NvbnRleHQSDQoFc2NlbmUYASABKAkSLAoIcmV2aXNpb24YAiABKAsyGi5jbGVhcmFuY2UudjEuUmV2aXNpb25SdWxlEiIKBXdhbnRzGAMgASgLMhMuY2xlYXJhbmNlLnYxLldhbnRzEg4KBm1hcmdpbhgEIAEoARIUCgdjdXRfb2ZmGAUgASgBSACIAQESKAoIYWNjdXJhY3kYBiABKAsyFi5jbGVhcmFuY2UudjEuQWNjdXJhY3kSJAoGZmlsdGVyGAcgASgLMhQuY2xlYXJhbmNlLnYxLkZpbHRlchIWCgltYXhfcGFpcnMYCCABKA1IAYgBARIYCgt0aW1lX2J1ZGdldBgJIAEoAUgCiAEBEi0KC2Fuc3dlcl9mb3JtGAogASgOMhguY2xlYXJhbmNlLnYxLkFuc3dlckZvcm0SJAoGc29sdmVyGAsgASgOMhQuY2xlYXJhbmNlLnYxLlNvbHZlchImCgdvdmVybGF5GAwgASgLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSKwoMYWx0ZXJuYXRpdmVzGA0gAygLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSGQoRaXRlbV9hbHRlcm5hdGl2ZXMYDiADKA0SHQoQbWF4X3BhdGNoX3BvaW50cxgPIAEoDUgDiAEBQgoKCF9jdXRfb2ZmQgwKCl9tYXhfcGFpcnNCDgoMX3RpbWVfYnVkZ2V0QhMKEV9tYXhfcGF0Y2hfcG9pbnRzIpcBChJDaGVja1N0YXRlc1JlcXVlc3QSJgoHY29udGV4dBgBIAEoCzIVLmNsZWFyYW5jZS52MS5Db250ZXh0Eg0KBXJvYm90GAIgASgJEigKCXBvc2l0aW9ucxgDIAEoCzIVLmNsZWFyYW5jZS52MS5Eb3VibGVzEiAKBG1vZGUYBCABKA4yEi5jbGVhcmFuY2UudjEuTW9kZSLGAQoHU3ViamVjdBIrCglhbGxfcGFpcnMYASABKAsyFi5jbGVhcmFuY2UudjEuQWxsUGFpcnNIABIlCgRib2R5GAIgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWZIABIqCgVzaGFwZRgDIAEoCzIZLmNsZWFyYW5jZS52MS5QbGFjZWRTaGFwZUgAEjMKDWNoYW5nZWRfc2luY2UYBCABKAsyGi5jbGVhcmFuY2UudjEuQ2hhbmdlZFNpbmNlSABCBgoEa2luZCIKCghBbGxQYWlycyIgCgxDaGFuZ2VkU2luY2USEAoIcmV2aXNpb24YASABKAQiUwoLUGxhY2VkU2hhcGUSIgoFc2hhcGUYASABKAsyEy5jbGVhcmFuY2UudjEuU2hhcGUSIAoEcG9zZRgCIAEoCzISLmNsZWFyYW5jZS52MS5Qb3NlIoABCg5Db2xsaWRlUmVxdWVzdBImCgdjb250ZXh0GAEgASgLMhUuY2xlYXJhbmNlLnYxLkNvbnRleHQSJAoFaXRlbXMYAiADKAsyFS5jbGVhcmFuY2UudjEuU3ViamVjdBIgCgRtb2RlGAMgASgOMhIuY2xlYXJhbmNlLnYxLk1vZGUigQEKD0Rpc3RhbmNlUmVxdWVzdBImCgdjb250ZXh0GAEgASgLMhUuY2xlYXJhbmNlLnYxLkNvbnRleHQSJAoFaXRlbXMYAiADKAsyFS5jbGVhcmFuY2UudjEuU3ViamVjdBIgCgRtb2RlGAMgASgOMhIuY2xlYXJhbmNlLnYxLk1vZGUiJwoHQnJhY2tldBINCgVsb3dlchgBIAEoARINCgV1cHBlchgCIAEoASKIAQoEU2lkZRImCgRsaW5rGAEgASgLMhYuY2xlYXJhbmNlLnYxLkxpbmtTaWRlSAASKAoFcXVlcnkYAiABKAsyFy5jbGVhcmFuY2UudjEuUXVlcnlTaWRlSAASJgoEYm9keRgDIAEoCzIWLmNsZWFyYW5jZS52MS5Cb2R5U2lkZUgAQgYKBGtpbmQiOQoITGlua1NpZGUSDAoEbGluaxgBIAEoDRINCgVzaGFwZRgCIAEoDRIQCghzdWJzaGFwZRgDIAEoDSIdCglRdWVyeVNpZGUSEAoIc3Vic2hhcGUYASABKA0iKAoIQm9keVNpZGUSCgoCaWQYASABKAQSEAoIc3Vic2hhcGUYAiABKA0iqAEKB1dpdG5lc3MSJgoKcG9pbnRfb25fYRgBIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEiYKCnBvaW50X29uX2IYAiABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxIiCgZub3JtYWwYAyABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxITCgtwb2ludF9lcnJvchgEIAEoARIUCgxub3JtYWxfZXJyb3IYBSABKAEi6gIKClBhaXJBbnN3ZXISHQoBYRgBIAEoCzISLmNsZWFyYW5jZS52MS5TaWRlEh0KAWIYAiABKAsyEi5jbGVhcmFuY2UudjEuU2lkZRImCgd2ZXJkaWN0GAMgASgOMhUuY2xlYXJhbmNlLnYxLlZlcmRpY3QSMgoNaW5kZXRlcm1pbmFjeRgEIAEoDjIbLmNsZWFyYW5jZS52MS5JbmRldGVybWluYWN5EiYKB2JyYWNrZXQYBSABKAsyFS5jbGVhcmFuY2UudjEuQnJhY2tldBIXCg9zaWduZWRfZGlzdGFuY2UYBiABKAESJgoHd2l0bmVzcxgHIAEoCzIVLmNsZWFyYW5jZS52MS5XaXRuZXNzEi4KC3Rlcm1pbmF0aW9uGAggASgOMhkuY2xlYXJhbmNlLnYxLlRlcm1pbmF0aW9uEikKBXBhdGNoGAkgASgLMhouY2xlYXJhbmNlLnYxLkNvbnRhY3RQYXRjaCKCAQoMQ29udGFjdFBhdGNoEiIKBm5vcm1hbBgBIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEioKBnBvaW50cxgCIAMoCzIaLmNsZWFyYW5jZS52MS5Db250YWN0UG9pbnQSDwoHY29ybmVycxgDIAEoDRIRCgl0cnVuY2F0ZWQYBCABKAgidwoMQ29udGFjdFBvaW50EiYKCnBvaW50X29uX2EYASABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxImCgpwb2ludF9vbl9iGAIgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSFwoPc2lnbmVkX2Rpc3RhbmNlGAMgASgBIqYBCgRDb3N0EhAKCHN1cHBvcnRzGAEgASgEEhYKDmdqa19pdGVyYXRpb25zGAIgASgEEhYKDmVwYV9pdGVyYXRpb25zGAMgASgEEg0KBW5vZGVzGAQgASgEEg0KBXBhaXJzGAUgASgEEhMKC2VzY2FsYXRpb25zGAYgASgEEhUKDXBhdGNoX2Nvcm5lcnMYByABKAQSEgoKcGF0Y2hfY3V0cxgIIAEoBCLjAgoKSXRlbUFuc3dlchImCgd2ZXJkaWN0GAEgASgOMhUuY2xlYXJhbmNlLnYxLlZlcmRpY3QSMgoNaW5kZXRlcm1pbmFjeRgCIAEoDjIbLmNsZWFyYW5jZS52MS5JbmRldGVybWluYWN5EikKB25lYXJlc3QYAyABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIuCgxuZWFyZXN0X3NlbGYYBCABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIvCg1uZWFyZXN0X3NjZW5lGAUgASgLMhguY2xlYXJhbmNlLnYxLlBhaXJBbnN3ZXISJwoFcGFpcnMYBiADKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIRCgl0cnVuY2F0ZWQYByABKAgSDwoHcHJvYmxlbRgIIAEoCRIgCgRjb3N0GAkgASgLMhIuY2xlYXJhbmNlLnYxLkNvc3Qi9gEKCkJ1bGtBbnN3ZXISEAoIdmVyZGljdHMYASABKAwSFwoPaW5kZXRlcm1pbmFjaWVzGAIgASgMEisKB25lYXJlc3QYAyABKAsyGi5jbGVhcmFuY2UudjEuQnVsa0JyYWNrZXRzEjAKDG5lYXJlc3Rfc2VsZhgEIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSMQoNbmVhcmVzdF9zY2VuZRgFIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSKwoIcHJvYmxlbXMYBiADKAsyGS5jbGVhcmFuY2UudjEuQnVsa1Byb2JsZW0iRQoMQnVsa0JyYWNrZXRzEg0KBWxvd2VyGAEgASgMEg0KBXVwcGVyGAIgASgMEhcKD3NpZ25lZF9kaXN0YW5jZRgDIAEoDCIsCgtCdWxrUHJvYmxlbRIMCgRpdGVtGAEgASgNEg8KB3Byb2JsZW0YAiABKAkiiAIKBkFuc3dlchINCgVlcG9jaBgBIAEoBBIQCghyZXZpc2lvbhgCIAEoBBInCgVpdGVtcxgDIAMoCzIYLmNsZWFyYW5jZS52MS5JdGVtQW5zd2VyEiYKBGJ1bGsYBCABKAsyGC5jbGVhcmFuY2UudjEuQnVsa0Fuc3dlchIXCgpzdG9wcGVkX2F0GAUgASgNSACIAQESEwoLb3V0X29mX3RpbWUYBiABKAgSIAoEY29zdBgHIAEoCzISLmNsZWFyYW5jZS52MS5Db3N0Ei0KDGFkZGVkX2JvZGllcxgIIAMoCzIXLmNsZWFyYW5jZS52MS5BZGRlZEJvZHlCDQoLX3N0b3BwZWRfYXQq4QEKBlNvbHZlchIWChJTT0xWRVJfVU5TUEVDSUZJRUQQABISCg5TT0xWRVJfREVGQVVMVBABEhYKElNPTFZFUl9GUkFOS19XT0xGRRACEg4KClNPTFZFUl9HSksQAxIVChFTT0xWRVJfR0pLX1BPTFlBSxAEEhcKE1NPTFZFUl9HSktfTkVTVEVST1YQBRIiCh5TT0xWRVJfR0pLX05FU1RFUk9WX05PUk1BTElTRUQQBhIOCgpTT0xWRVJfU0FUEAcSDQoJU09MVkVSX1FQEAgSEAoMU09MVkVSX0VYQUNUEAkqVgoKQW5zd2VyRm9ybRIbChdBTlNXRVJfRk9STV9VTlNQRUNJRklFRBAAEhUKEUFOU1dFUl9GT1JNX0lURU1TEAESFAoQQU5TV0VSX0ZPUk1fQlVMSxACKkIKBE1vZGUSFAoQTU9ERV9VTlNQRUNJRklFRBAAEgwKCE1PREVfQUxMEAESFgoSTU9ERV9TVE9QX0FUX0ZJUlNUEAIqqgEKB1ZlcmRpY3QSFwoTVkVSRElDVF9VTlNQRUNJRklFRBAAEhAKDFZFUkRJQ1RfRlJFRRABEhIKDlZFUkRJQ1RfTUFSR0lOEAISFQoRVkVSRElDVF9DT0xMSVNJT04QAxIZChVWRVJESUNUX0lOREVURVJNSU5BVEUQBBITCg9WRVJESUNUX05PVF9SVU4QBRIZChVWRVJESUNUX0lOVkFMSURfSU5QVVQQBiqpAQoNSW5kZXRlcm1pbmFjeRIdChlJTkRFVEVSTUlOQUNZX1VOU1BFQ0lGSUVEEAASGgoWSU5ERVRFUk1JTkFDWV9ST1VORElORxABEiEKHUlOREVURVJNSU5BQ1lfSVRFUkFUSU9OX0xJTUlUEAISHAoYSU5ERVRFUk1JTkFDWV9USU1FX0xJTUlUEAMSHAoYSU5ERVRFUk1JTkFDWV9SRVNPTFVUSU9OEAQq7wEKC1Rlcm1pbmF0aW9uEhsKF1RFUk1JTkFUSU9OX1VOU1BFQ0lGSUVEEAASGwoXVEVSTUlOQVRJT05fQ0xPU0VEX0ZPUk0QARIZChVURVJNSU5BVElPTl9DT05WRVJHRUQQAhIXChNURVJNSU5BVElPTl9ERUNJREVEEAMSHgoaVEVSTUlOQVRJT05fUk9VTkRJTkdfRkxPT1IQBBIfChtURVJNSU5BVElPTl9JVEVSQVRJT05fTElNSVQQBRIaChZURVJNSU5BVElPTl9USU1FX0xJTUlUEAYSFQoRVEVSTUlOQVRJT05fRVhBQ1QQB2IGcHJvdG8z", [file_clearance_v1_geometry, file_clearance_v1_overlay, file_clearance_v1_scene]);
 
 /**
  * Which state of the scene is asked. One that is still to come is waited for until the deadline, then UNAVAILABLE.
@@ -119,6 +119,16 @@ export type Wants = Message<"clearance.v1.Wants"> & {
    * @generated from field: bool pairs = 4;
    */
   pairs: boolean;
+
+  /**
+   * where the faces touch of pairs that are told and not proved apart by more than their margin; includes `witness` and
+   * `depth`
+   *
+   * 6 to 15 are kept for motion, derivatives and declared effects.
+   *
+   * @generated from field: bool patch = 5;
+   */
+  patch: boolean;
 };
 
 /**
@@ -310,11 +320,16 @@ export type Context = Message<"clearance.v1.Context"> & {
    * For each item the number of its alternative, counted from one; 0: none. Empty: no item has one. Items with the same
    * number share what the alternative costs
    *
-   * 15 to 29 are kept for tolerances and caches.
-   *
    * @generated from field: repeated uint32 item_alternatives = 14;
    */
   itemAlternatives: number[];
+
+  /**
+   * points of a contact patch at most, 1 to 32; absent: 32
+   *
+   * @generated from field: optional uint32 max_patch_points = 15;
+   */
+  maxPatchPoints?: number | undefined;
 };
 
 /**
@@ -815,6 +830,16 @@ export type PairAnswer = Message<"clearance.v1.PairAnswer"> & {
    * @generated from field: clearance.v1.Termination termination = 8;
    */
   termination: Termination;
+
+  /**
+   * Where wanted, of a pair that is not proved apart by more than its margin; absent for a piece that is not a single convex
+   * one, as of a mesh within a compound
+   *
+   * 10 to 15 are kept for motion and derivatives.
+   *
+   * @generated from field: clearance.v1.ContactPatch patch = 9;
+   */
+  patch?: ContactPatch | undefined;
 };
 
 /**
@@ -823,6 +848,85 @@ export type PairAnswer = Message<"clearance.v1.PairAnswer"> & {
  */
 export const PairAnswerSchema: GenMessage<PairAnswer> = /*@__PURE__*/
   messageDesc(file_clearance_v1_query, 19);
+
+/**
+ * Where the faces touch, or are nearest, of the two convex pieces that a pair names: what of them lies above one another along
+ * the normal.
+ *
+ * @generated from message clearance.v1.ContactPatch
+ */
+export type ContactPatch = Message<"clearance.v1.ContactPatch"> & {
+  /**
+   * unit vector from A to B, world frame: that of the witness
+   *
+   * @generated from field: clearance.v1.Vec3 normal = 1;
+   */
+  normal?: Vec3 | undefined;
+
+  /**
+   * Corners of a convex polygon, counter-clockwise as seen from the tip of the normal, the deepest first (two: the ends of a
+   * line); and after the `corners` corners the witness, where it is deeper than every corner
+   *
+   * @generated from field: repeated clearance.v1.ContactPoint points = 2;
+   */
+  points: ContactPoint[];
+
+  /**
+   * how many of the points are corners of the polygon, count
+   *
+   * @generated from field: uint32 corners = 3;
+   */
+  corners: number;
+
+  /**
+   * there are fewer corners than there should be
+   *
+   * @generated from field: bool truncated = 4;
+   */
+  truncated: boolean;
+};
+
+/**
+ * Describes the message clearance.v1.ContactPatch.
+ * Use `create(ContactPatchSchema)` to create a new message.
+ */
+export const ContactPatchSchema: GenMessage<ContactPatch> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_query, 20);
+
+/**
+ * A point of a contact patch: point_on_b - point_on_a = signed_distance * normal.
+ *
+ * @generated from message clearance.v1.ContactPoint
+ */
+export type ContactPoint = Message<"clearance.v1.ContactPoint"> & {
+  /**
+   * metres, world frame: on the face of A
+   *
+   * @generated from field: clearance.v1.Vec3 point_on_a = 1;
+   */
+  pointOnA?: Vec3 | undefined;
+
+  /**
+   * metres, world frame: on the face of B
+   *
+   * @generated from field: clearance.v1.Vec3 point_on_b = 2;
+   */
+  pointOnB?: Vec3 | undefined;
+
+  /**
+   * metres along the normal; negative: how far the faces overlap here
+   *
+   * @generated from field: double signed_distance = 3;
+   */
+  signedDistance: number;
+};
+
+/**
+ * Describes the message clearance.v1.ContactPoint.
+ * Use `create(ContactPointSchema)` to create a new message.
+ */
+export const ContactPointSchema: GenMessage<ContactPoint> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_query, 21);
 
 /**
  * What the work cost. Counters only, so that equal work has equal bytes.
@@ -871,6 +975,20 @@ export type Cost = Message<"clearance.v1.Cost"> & {
    * @generated from field: uint64 escalations = 6;
    */
   escalations: bigint;
+
+  /**
+   * corners of shapes that contact patches looked at, count
+   *
+   * @generated from field: uint64 patch_corners = 7;
+   */
+  patchCorners: bigint;
+
+  /**
+   * corners of contact patches held against an edge of a face or the margin, count
+   *
+   * @generated from field: uint64 patch_cuts = 8;
+   */
+  patchCuts: bigint;
 };
 
 /**
@@ -878,7 +996,7 @@ export type Cost = Message<"clearance.v1.Cost"> & {
  * Use `create(CostSchema)` to create a new message.
  */
 export const CostSchema: GenMessage<Cost> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 20);
+  messageDesc(file_clearance_v1_query, 22);
 
 /**
  * The answer to one item.
@@ -956,7 +1074,7 @@ export type ItemAnswer = Message<"clearance.v1.ItemAnswer"> & {
  * Use `create(ItemAnswerSchema)` to create a new message.
  */
 export const ItemAnswerSchema: GenMessage<ItemAnswer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 21);
+  messageDesc(file_clearance_v1_query, 23);
 
 /**
  * Verdicts and brackets of all items as arrays, in the order of the items.
@@ -1012,7 +1130,7 @@ export type BulkAnswer = Message<"clearance.v1.BulkAnswer"> & {
  * Use `create(BulkAnswerSchema)` to create a new message.
  */
 export const BulkAnswerSchema: GenMessage<BulkAnswer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 22);
+  messageDesc(file_clearance_v1_query, 24);
 
 /**
  * Brackets as arrays: 8 bytes an item, IEEE 754 binary64, little-endian. NaN: the item has no such pair.
@@ -1047,7 +1165,7 @@ export type BulkBrackets = Message<"clearance.v1.BulkBrackets"> & {
  * Use `create(BulkBracketsSchema)` to create a new message.
  */
 export const BulkBracketsSchema: GenMessage<BulkBrackets> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 23);
+  messageDesc(file_clearance_v1_query, 25);
 
 /**
  * What is wrong with one item of a bulk answer.
@@ -1075,7 +1193,7 @@ export type BulkProblem = Message<"clearance.v1.BulkProblem"> & {
  * Use `create(BulkProblemSchema)` to create a new message.
  */
 export const BulkProblemSchema: GenMessage<BulkProblem> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 24);
+  messageDesc(file_clearance_v1_query, 26);
 
 /**
  * The answer to a question.
@@ -1145,7 +1263,7 @@ export type Answer = Message<"clearance.v1.Answer"> & {
  * Use `create(AnswerSchema)` to create a new message.
  */
 export const AnswerSchema: GenMessage<Answer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 25);
+  messageDesc(file_clearance_v1_query, 27);
 
 /**
  * A way to find the signed distance of two convex shapes. Every solver's bracket is proved; they differ in work and in how
@@ -1252,7 +1370,7 @@ export enum AnswerForm {
   ITEMS = 1,
 
   /**
-   * `Answer.bulk`: arrays of verdicts and brackets, without pairs and witnesses
+   * `Answer.bulk`: arrays of verdicts and brackets; no pairs, witnesses, patches
    *
    * @generated from enum value: ANSWER_FORM_BULK = 2;
    */

@@ -117,16 +117,18 @@ class Latest(_message.Message):
     def __init__(self) -> None: ...
 
 class Wants(_message.Message):
-    __slots__ = ("distance", "witness", "depth", "pairs")
+    __slots__ = ("distance", "witness", "depth", "pairs", "patch")
     DISTANCE_FIELD_NUMBER: _ClassVar[int]
     WITNESS_FIELD_NUMBER: _ClassVar[int]
     DEPTH_FIELD_NUMBER: _ClassVar[int]
     PAIRS_FIELD_NUMBER: _ClassVar[int]
+    PATCH_FIELD_NUMBER: _ClassVar[int]
     distance: bool
     witness: bool
     depth: bool
     pairs: bool
-    def __init__(self, distance: bool = ..., witness: bool = ..., depth: bool = ..., pairs: bool = ...) -> None: ...
+    patch: bool
+    def __init__(self, distance: bool = ..., witness: bool = ..., depth: bool = ..., pairs: bool = ..., patch: bool = ...) -> None: ...
 
 class Accuracy(_message.Message):
     __slots__ = ("absolute", "relative")
@@ -151,7 +153,7 @@ class Filter(_message.Message):
     def __init__(self, groups: _Optional[_Iterable[str]] = ..., ignore: _Optional[_Iterable[_Union[_scene_pb2.BodyRef, _Mapping]]] = ..., disregard_allowed_collisions: bool = ..., layers: _Optional[int] = ..., mask: _Optional[int] = ...) -> None: ...
 
 class Context(_message.Message):
-    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver", "overlay", "alternatives", "item_alternatives")
+    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver", "overlay", "alternatives", "item_alternatives", "max_patch_points")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     WANTS_FIELD_NUMBER: _ClassVar[int]
@@ -166,6 +168,7 @@ class Context(_message.Message):
     OVERLAY_FIELD_NUMBER: _ClassVar[int]
     ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
     ITEM_ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
+    MAX_PATCH_POINTS_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: RevisionRule
     wants: Wants
@@ -180,7 +183,8 @@ class Context(_message.Message):
     overlay: _overlay_pb2.Overlay
     alternatives: _containers.RepeatedCompositeFieldContainer[_overlay_pb2.Overlay]
     item_alternatives: _containers.RepeatedScalarFieldContainer[int]
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ..., overlay: _Optional[_Union[_overlay_pb2.Overlay, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[_overlay_pb2.Overlay, _Mapping]]] = ..., item_alternatives: _Optional[_Iterable[int]] = ...) -> None: ...
+    max_patch_points: int
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ..., overlay: _Optional[_Union[_overlay_pb2.Overlay, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[_overlay_pb2.Overlay, _Mapping]]] = ..., item_alternatives: _Optional[_Iterable[int]] = ..., max_patch_points: _Optional[int] = ...) -> None: ...
 
 class CheckStatesRequest(_message.Message):
     __slots__ = ("context", "robot", "positions", "mode")
@@ -301,7 +305,7 @@ class Witness(_message.Message):
     def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., normal: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_error: _Optional[float] = ..., normal_error: _Optional[float] = ...) -> None: ...
 
 class PairAnswer(_message.Message):
-    __slots__ = ("a", "b", "verdict", "indeterminacy", "bracket", "signed_distance", "witness", "termination")
+    __slots__ = ("a", "b", "verdict", "indeterminacy", "bracket", "signed_distance", "witness", "termination", "patch")
     A_FIELD_NUMBER: _ClassVar[int]
     B_FIELD_NUMBER: _ClassVar[int]
     VERDICT_FIELD_NUMBER: _ClassVar[int]
@@ -310,6 +314,7 @@ class PairAnswer(_message.Message):
     SIGNED_DISTANCE_FIELD_NUMBER: _ClassVar[int]
     WITNESS_FIELD_NUMBER: _ClassVar[int]
     TERMINATION_FIELD_NUMBER: _ClassVar[int]
+    PATCH_FIELD_NUMBER: _ClassVar[int]
     a: Side
     b: Side
     verdict: Verdict
@@ -318,23 +323,50 @@ class PairAnswer(_message.Message):
     signed_distance: float
     witness: Witness
     termination: Termination
-    def __init__(self, a: _Optional[_Union[Side, _Mapping]] = ..., b: _Optional[_Union[Side, _Mapping]] = ..., verdict: _Optional[_Union[Verdict, str]] = ..., indeterminacy: _Optional[_Union[Indeterminacy, str]] = ..., bracket: _Optional[_Union[Bracket, _Mapping]] = ..., signed_distance: _Optional[float] = ..., witness: _Optional[_Union[Witness, _Mapping]] = ..., termination: _Optional[_Union[Termination, str]] = ...) -> None: ...
+    patch: ContactPatch
+    def __init__(self, a: _Optional[_Union[Side, _Mapping]] = ..., b: _Optional[_Union[Side, _Mapping]] = ..., verdict: _Optional[_Union[Verdict, str]] = ..., indeterminacy: _Optional[_Union[Indeterminacy, str]] = ..., bracket: _Optional[_Union[Bracket, _Mapping]] = ..., signed_distance: _Optional[float] = ..., witness: _Optional[_Union[Witness, _Mapping]] = ..., termination: _Optional[_Union[Termination, str]] = ..., patch: _Optional[_Union[ContactPatch, _Mapping]] = ...) -> None: ...
+
+class ContactPatch(_message.Message):
+    __slots__ = ("normal", "points", "corners", "truncated")
+    NORMAL_FIELD_NUMBER: _ClassVar[int]
+    POINTS_FIELD_NUMBER: _ClassVar[int]
+    CORNERS_FIELD_NUMBER: _ClassVar[int]
+    TRUNCATED_FIELD_NUMBER: _ClassVar[int]
+    normal: _geometry_pb2.Vec3
+    points: _containers.RepeatedCompositeFieldContainer[ContactPoint]
+    corners: int
+    truncated: bool
+    def __init__(self, normal: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., points: _Optional[_Iterable[_Union[ContactPoint, _Mapping]]] = ..., corners: _Optional[int] = ..., truncated: bool = ...) -> None: ...
+
+class ContactPoint(_message.Message):
+    __slots__ = ("point_on_a", "point_on_b", "signed_distance")
+    POINT_ON_A_FIELD_NUMBER: _ClassVar[int]
+    POINT_ON_B_FIELD_NUMBER: _ClassVar[int]
+    SIGNED_DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    point_on_a: _geometry_pb2.Vec3
+    point_on_b: _geometry_pb2.Vec3
+    signed_distance: float
+    def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., signed_distance: _Optional[float] = ...) -> None: ...
 
 class Cost(_message.Message):
-    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations")
+    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts")
     SUPPORTS_FIELD_NUMBER: _ClassVar[int]
     GJK_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     EPA_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     NODES_FIELD_NUMBER: _ClassVar[int]
     PAIRS_FIELD_NUMBER: _ClassVar[int]
     ESCALATIONS_FIELD_NUMBER: _ClassVar[int]
+    PATCH_CORNERS_FIELD_NUMBER: _ClassVar[int]
+    PATCH_CUTS_FIELD_NUMBER: _ClassVar[int]
     supports: int
     gjk_iterations: int
     epa_iterations: int
     nodes: int
     pairs: int
     escalations: int
-    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ..., escalations: _Optional[int] = ...) -> None: ...
+    patch_corners: int
+    patch_cuts: int
+    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ..., escalations: _Optional[int] = ..., patch_corners: _Optional[int] = ..., patch_cuts: _Optional[int] = ...) -> None: ...
 
 class ItemAnswer(_message.Message):
     __slots__ = ("verdict", "indeterminacy", "nearest", "nearest_self", "nearest_scene", "pairs", "truncated", "problem", "cost")
