@@ -29,7 +29,7 @@ pub struct Limits {
     pub max_bodies: usize,
     /// Robots that stand in one scene.
     pub max_robots_in_scene: usize,
-    /// Entries for pairs of one scene: allowed collisions and margins together.
+    /// Entries for pairs of one scene: allowed collisions, margins and declared effects together.
     pub max_pair_entries: usize,
     /// Robot models of the daemon.
     pub max_robot_models: usize,

@@ -85,6 +85,13 @@ func SetPairMargin(a, b *pb.Party, margin float64) *pb.Edit {
 	return &pb.Edit{Kind: &pb.Edit_SetPairMargin{SetPairMargin: message}}
 }
 
+// DeclareEffects says what may be asked of a pair; with each effect goes what it needs. Of none the pair is not looked at, and
+// answers list it in their coverage.
+func DeclareEffects(a, b *pb.Party, effects ...pb.Effect) *pb.Edit {
+	message := &pb.DeclareEffects{A: a, B: b, Effects: &pb.Effects{Effects: effects}}
+	return &pb.Edit{Kind: &pb.Edit_DeclareEffects{DeclareEffects: message}}
+}
+
 // OneBody is a single body as one side of an entry for pairs.
 func OneBody[N Name](body N) *pb.Party { return &pb.Party{Kind: &pb.Party_Body{Body: Ref(body)}} }
 

@@ -115,6 +115,7 @@ func TestEveryEditAndShapeIsTaken(t *testing.T) {
 		clearance.AllowCollision(clearance.OneBody("box"), clearance.AllLinks("arm"), true),
 		clearance.AllowCollision(clearance.OneLink("arm", "boom"), clearance.Group("fixtures"), false),
 		clearance.SetPairMargin(clearance.OneBody("box"), clearance.Everything(), 0.1),
+		clearance.DeclareEffects(clearance.OneBody("box"), clearance.Everything(), pb.Effect_EFFECT_MARGIN),
 		clearance.RemoveBody("plane"),
 	))(t)
 	if got := must(scene.Contents(ctx))(t); len(got.Robots) != 1 || len(got.Bodies) != len(shapes)-1 {

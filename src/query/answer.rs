@@ -1,8 +1,9 @@
 //! What is answered. Sorted and deterministic: equal questions to equal snapshots get equal bytes.
 
+use super::declared::Coverage;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{Bracket, ContactPatch, Cost, Termination};
-use crate::scene::{BodyId, Epoch, Revision};
+use crate::scene::{BodyId, Effect, Epoch, Party, Revision};
 
 /// What the bracket decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,6 +185,8 @@ pub struct Answer {
     pub stopped_at: Option<usize>,
     /// The time ran out before every item was looked at; those are `NOT_RUN`.
     pub out_of_time: bool,
+    /// What none of the items says anything about.
+    pub coverage: Coverage,
     /// Sum over the items.
     pub cost: Cost,
 }
@@ -228,6 +231,16 @@ pub enum Refused {
         name: String,
         /// Where it was looked for.
         revision: Revision,
+    },
+    /// An effect is wanted that the scene does not declare for a pair that the question may be about.
+    #[error("the pair of {a} and {b} is declared without the effect `{effect}`, which is wanted")]
+    NotDeclared {
+        /// The first that is lacking.
+        effect: Effect,
+        /// The asker's side.
+        a: Party,
+        /// The other side.
+        b: Party,
     },
     /// An output whose code was left out of this build.
     #[error("{field}: this build is without the effect `{effect}`")]

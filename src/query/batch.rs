@@ -4,12 +4,14 @@ use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::context::length;
+use super::declared::{Coverage, coverage, effects_of};
 use super::motions::Motions;
 use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
-use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Mode, PairQuery};
+use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Mode, PairQuery, Subject};
 use super::states::States;
 use crate::narrow_phase::Cost;
+use crate::scene::{Asker, BodyId, Effect, Effects};
 
 /// A checked request on a snapshot, or on worlds supposed on it. Runs of disjoint ranges may go on at the same time;
 /// [`Prepared::join`] puts their parts together in order.
@@ -18,6 +20,7 @@ pub struct Prepared<'a> {
     mode: Mode,
     /// One for each world, the common one first: the same question.
     questions: Vec<Question<'a>>,
+    coverage: Coverage,
 }
 
 enum Question<'a> {
@@ -38,7 +41,13 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A context that cannot be, a robot that is not in the scene, positions that are no whole number of states.
     pub fn check_states(asked: impl Into<Asked<'a>>, request: &'a CheckStates) -> Result<Self, Refused> {
-        Self::in_each(asked.into(), request.mode, |world| Ok(Question::States(States::new(world, request)?)))
+        let context = &request.context;
+        let wanted = effects_of(context.wants, context.margin);
+        Self::in_each(asked.into(), request.mode, |world| Ok(Question::States(States::new(world, request)?)))?.of_robot(
+            &request.robot,
+            context,
+            wanted,
+        )
     }
 
     /// Is the robot free all along these motions?
@@ -47,7 +56,10 @@ impl<'a> Prepared<'a> {
     /// A context, resolution or number of states that cannot be, a robot that is not in the scene or does not move, positions
     /// that are no whole number of motions.
     pub fn check_motions(asked: impl Into<Asked<'a>>, request: &'a CheckMotions) -> Result<Self, Refused> {
-        Self::in_each(asked.into(), request.mode, |world| Ok(Question::Motions(Motions::new(world, request)?)))
+        let context = &request.context;
+        let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Motion));
+        Self::in_each(asked.into(), request.mode, |world| Ok(Question::Motions(Motions::new(world, request)?)))?
+            .of_robot(&request.robot, context, wanted)
     }
 
     /// Which pairs touch?
@@ -57,7 +69,8 @@ impl<'a> Prepared<'a> {
     pub fn collide(asked: impl Into<Asked<'a>>, request: &'a PairQuery) -> Result<Self, Refused> {
         let asked = asked.into();
         let common = Pairs::collide(asked.common().snapshot, request)?;
-        Self::of_pairs(asked, request.mode, &common)
+        let wanted = effects_of(request.context.wants, request.context.margin);
+        Self::of_pairs(asked, request, &common)?.of_subjects(request, wanted)
     }
 
     /// How far is the nearest?
@@ -67,7 +80,7 @@ impl<'a> Prepared<'a> {
     pub fn distance(asked: impl Into<Asked<'a>>, request: &'a PairQuery) -> Result<Self, Refused> {
         let asked = asked.into();
         let common = Pairs::distance(asked.common().snapshot, request)?;
-        Self::of_pairs(asked, request.mode, &common)
+        Self::of_pairs(asked, request, &common)?.of_subjects(request, with_distance(&request.context))
     }
 
     /// Which pairs are within a distance?
@@ -80,16 +93,17 @@ impl<'a> Prepared<'a> {
         match &request.subjects {
             ClearanceOf::States(states) => Self::in_each(asked, states.mode, |world| {
                 Ok(Question::States(States::clearance(world, states, request.within)?))
-            }),
+            })?
+            .of_robot(&states.robot, &states.context, with_distance(&states.context)),
             ClearanceOf::Subjects(pairs) => {
                 let common = Pairs::clearance(asked.common().snapshot, pairs, request.within)?;
-                Self::of_pairs(asked, pairs.mode, &common)
+                Self::of_pairs(asked, pairs, &common)?.of_subjects(pairs, with_distance(&pairs.context))
             }
         }
     }
 
-    fn of_pairs(asked: Asked<'a>, mode: Mode, common: &Pairs<'a>) -> Result<Self, Refused> {
-        Self::in_each(asked, mode, |world| {
+    fn of_pairs(asked: Asked<'a>, request: &PairQuery, common: &Pairs<'a>) -> Result<Self, Refused> {
+        Self::in_each(asked, request.mode, |world| {
             world.check_nothing_held()?;
             // The common question once more, as it is cheap, and otherwise the same in another world.
             Ok(Question::Pairs(common.in_world(world)))
@@ -110,7 +124,43 @@ impl<'a> Prepared<'a> {
             }
         }
         asked.check_items(questions[0].len())?;
-        Ok(Self { asked, mode, questions })
+        Ok(Self { asked, mode, questions, coverage: Coverage::default() })
+    }
+
+    /// Checks what the scene, and each world in its place, declares of the robot.
+    fn of_robot(self, robot: &str, context: &Context, wanted: Effects) -> Result<Self, Refused> {
+        self.covered(context, wanted, |place| Asker::Robot(robot, place.held_bodies()))
+    }
+
+    /// The same of the subjects. A bare shape is in no pair of the scene.
+    fn of_subjects(self, request: &PairQuery, wanted: Effects) -> Result<Self, Refused> {
+        let everybody = |subject: &Subject| matches!(subject, Subject::All | Subject::ChangedSince(_));
+        let id = |subject: &Subject| match subject {
+            Subject::Body(id) => Some(*id),
+            Subject::All | Subject::ChangedSince(_) | Subject::Shape { .. } => None,
+        };
+        let bodies: Vec<BodyId> = request.items.iter().filter_map(id).collect();
+        let all = request.items.iter().any(everybody);
+        if !all && bodies.is_empty() {
+            return Ok(self);
+        }
+        self.covered(&request.context, wanted, |_| if all { Asker::Everybody } else { Asker::Bodies(&bodies) })
+    }
+
+    fn covered<'s>(
+        mut self,
+        context: &Context,
+        wanted: Effects,
+        asker: impl Fn(&Place<'a>) -> Asker<'s>,
+    ) -> Result<Self, Refused>
+    where
+        'a: 's,
+    {
+        for place in self.asked.places() {
+            let of_place = coverage(place.snapshot, &asker(&place), context, wanted)?;
+            self.coverage = self.coverage.and(of_place);
+        }
+        Ok(self)
     }
 
     /// Number of items that a thread should take at a time, at least: fewer cost more in handing over than they gain.
@@ -195,6 +245,7 @@ impl<'a> Prepared<'a> {
             items: Vec::with_capacity(self.len()),
             stopped_at: None,
             out_of_time: false,
+            coverage: self.coverage.clone(),
             cost: Cost::default(),
         };
         for part in parts {
@@ -221,6 +272,11 @@ impl<'a> Prepared<'a> {
     pub fn answer(&self, stop: &dyn Fn() -> bool) -> Answer {
         self.join([self.run(0..self.len(), stop)])
     }
+}
+
+/// What is wanted of a question that tells distances whether they are wanted or not.
+fn with_distance(context: &Context) -> Effects {
+    effects_of(context.wants, context.margin).and(Effects::of(Effect::Distance))
 }
 
 impl Question<'_> {

@@ -1,6 +1,7 @@
 //! Answers about rays, motions, regions and neighbours. Sorted and deterministic, as all answers.
 
 use super::answer::{Indeterminacy, PairAnswer, Verdict};
+use super::declared::Coverage;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{Cost, Termination};
 use crate::scene::{BodyId, Epoch, Revision};
@@ -166,6 +167,8 @@ pub struct Answers<T> {
     pub out_of_time: bool,
     /// How many items were looked at.
     pub answered: usize,
+    /// What none of the items says anything about.
+    pub coverage: Coverage,
 }
 
 /// Why something was left open, by what ended the work.

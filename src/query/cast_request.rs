@@ -40,6 +40,17 @@ pub enum Moved {
     Body(BodyId),
 }
 
+impl Moved {
+    /// The body, if it is one of the scene.
+    #[must_use]
+    pub fn body(&self) -> Option<BodyId> {
+        match self {
+            Self::Body(id) => Some(*id),
+            Self::Shape(_) => None,
+        }
+    }
+}
+
 /// How it moves, over the time 0 to 1: its origin along a straight line, turning about an axis that keeps its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {

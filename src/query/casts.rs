@@ -3,12 +3,13 @@
 use super::answer::{Indeterminacy, Refused};
 use super::cast_answer::{CastHit, CastItem, CastVerdict, why};
 use super::cast_request::{CastMode, CastShapes, CheckMovingPairs, Moved, Mover, Way};
+use super::declared::Coverage;
 use super::item_batch::ItemBatch;
 use super::met::MetBodies;
 use super::opponents::Opponents;
 use crate::geometry::{Aabb, BoxCast, Placement, Pose, RigidMotion, Shape, Vec3};
 use crate::narrow_phase::{Impact, ImpactGoal, NoImpact, impact};
-use crate::scene::{Body, BodyId, Snapshot};
+use crate::scene::{Body, BodyId, Effect, Effects, Snapshot};
 
 /// Beyond this turn, radians, a box around the ball that a shape turns in is as good as any.
 const LARGE_TURN: f64 = 1.5;
@@ -20,12 +21,14 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub struct Casts<'a> {
     opponents: Opponents<'a>,
     request: &'a CastShapes,
+    coverage: Coverage,
 }
 
 /// A checked request of [`CheckMovingPairs`].
 pub struct MovingPairs<'a> {
     opponents: Opponents<'a>,
     request: &'a CheckMovingPairs,
+    coverage: Coverage,
 }
 
 /// Something that moves, looked up in the scene.
@@ -72,7 +75,10 @@ impl<'a> Casts<'a> {
     /// A context or a resolution that cannot be.
     pub fn new(snapshot: &'a Snapshot, request: &'a CastShapes) -> Result<Self, Refused> {
         checked_resolution(request.resolution)?;
-        Ok(Self { opponents: Opponents::without_solver(snapshot, &request.context)?, request })
+        let opponents = Opponents::without_solver(snapshot, &request.context)?;
+        let bodies: Vec<BodyId> = request.items.iter().filter_map(|item| item.moved.body()).collect();
+        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Motion))?;
+        Ok(Self { opponents, request, coverage })
     }
 
     fn cast(&self, one: &Traveller, stop: &dyn Fn() -> bool) -> Result<CastItem, String> {
@@ -141,6 +147,10 @@ impl ItemBatch for Casts<'_> {
         CastItem::without_work(CastVerdict::NotRun)
     }
 
+    fn coverage(&self) -> Coverage {
+        self.coverage.clone()
+    }
+
     fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> CastItem {
         let path = format!("items[{item}]");
         let one = match Traveller::new(&self.request.items[item], self.opponents.snapshot, &path) {
@@ -159,7 +169,10 @@ impl<'a> MovingPairs<'a> {
     /// A context or a resolution that cannot be.
     pub fn new(snapshot: &'a Snapshot, request: &'a CheckMovingPairs) -> Result<Self, Refused> {
         checked_resolution(request.resolution)?;
-        Ok(Self { opponents: Opponents::without_solver(snapshot, &request.context)?, request })
+        let opponents = Opponents::without_solver(snapshot, &request.context)?;
+        let bodies: Vec<BodyId> = request.items.iter().flatten().filter_map(|item| item.moved.body()).collect();
+        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Motion))?;
+        Ok(Self { opponents, request, coverage })
     }
 
     fn pair(&self, item: usize, stop: &dyn Fn() -> bool) -> Result<CastItem, String> {
@@ -200,6 +213,10 @@ impl ItemBatch for MovingPairs<'_> {
 
     fn not_run(&self) -> CastItem {
         CastItem::without_work(CastVerdict::NotRun)
+    }
+
+    fn coverage(&self) -> Coverage {
+        self.coverage.clone()
     }
 
     fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> CastItem {

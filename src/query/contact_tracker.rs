@@ -11,12 +11,13 @@ use super::contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, PairKey,
     Threshold,
 };
+use super::declared::{coverage, effects_of};
 use super::pairs::Pairs;
 use super::request::{Context, Mode, PairQuery, Wants};
 use super::search::Search;
 use crate::limits::LimitExceeded;
 use crate::narrow_phase::Cost;
-use crate::scene::{BodyId, Changes, Epoch, NotKept, Revision, Snapshot};
+use crate::scene::{Asker, BodyId, Changes, Effect, Effects, Epoch, NotKept, Revision, Snapshot};
 
 /// The contacts of one revision, which can be led on to later ones.
 #[derive(Clone, Debug)]
@@ -71,6 +72,9 @@ impl ContactTracker {
         let query = self.query();
         let pairs =
             Pairs::tracked(snapshot, &query, self.question.threshold == Threshold::Touching, self.at.is_none())?;
+        let context = &query.context;
+        let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Events));
+        let coverage = coverage(snapshot, &Asker::Everybody, context, wanted)?;
         let (measured, cost) = self.measure(&pairs, changes.as_ref(), stop)?;
         let suspects = self.suspects(snapshot, changes.as_ref());
         let mut events = self.differences(&pairs, measured, &suspects);
@@ -91,6 +95,7 @@ impl ContactTracker {
             events,
             contacts: self.contacts,
             undecided: self.undecided,
+            coverage,
             cost,
         })
     }

@@ -4,6 +4,7 @@
 //! the differences of the states at two revisions, whatever happened in between; `docs/queries.md` has the table.
 
 use super::answer::{PairAnswer, Refused};
+use super::declared::Coverage;
 use super::request::{Filter, Wants};
 use crate::limits::LimitExceeded;
 use crate::narrow_phase::{Accuracy, Cost, MOST_POINTS, Solver};
@@ -126,6 +127,8 @@ pub struct ContactChanges {
     pub contacts: usize,
     /// Undecided pairs at the new revision.
     pub undecided: usize,
+    /// What no event says anything about.
+    pub coverage: Coverage,
     /// What it cost.
     pub cost: Cost,
 }

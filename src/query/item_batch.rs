@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::cast_answer::Answers;
+use super::declared::Coverage;
 use crate::scene::Snapshot;
 
 /// A checked request of independent items.
@@ -26,6 +27,11 @@ pub trait ItemBatch: Sync {
 
     /// What stands for an item that was not looked at.
     fn not_run(&self) -> Self::Item;
+
+    /// What none of the answers says anything about.
+    fn coverage(&self) -> Coverage {
+        Coverage::default()
+    }
 
     /// Answers the items of a range, and says how many of them were looked at. `stop` is asked before each item; an item that it cut short is
     /// no answer.
@@ -56,7 +62,7 @@ pub trait ItemBatch: Sync {
             items.extend(part);
             answered += looked_at;
         }
-        Answers { epoch, revision, out_of_time: answered < items.len(), answered, items }
+        Answers { epoch, revision, out_of_time: answered < items.len(), answered, coverage: self.coverage(), items }
     }
 
     /// Everything in one go.

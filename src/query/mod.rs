@@ -9,6 +9,7 @@ mod changed_pairs;
 mod contact_tracker;
 mod contacts;
 mod context;
+mod declared;
 mod item_batch;
 mod mesh_card;
 mod met;
@@ -40,6 +41,7 @@ pub use contact_tracker::ContactTracker;
 pub use contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, Threshold,
 };
+pub use declared::Coverage;
 pub use item_batch::ItemBatch;
 pub use mesh_card::MeshCard;
 pub use nearest_bodies::Neighbours;

@@ -3,19 +3,21 @@
 use super::answer::{PairAnswer, Refused, Side, Verdict, Witness};
 use super::cast_answer::NearestItem;
 use super::cast_request::NearestBodies;
+use super::declared::Coverage;
 use super::item_batch::ItemBatch;
 use super::opponents::Opponents;
 use super::patch::patch;
 use super::request::{Subject, Wants};
 use crate::geometry::{Aabb, Placement, Shape};
 use crate::narrow_phase::{Cost, Depth, Goal, NoSeparation, Separation, separation};
-use crate::scene::{Body, BodyId, Snapshot};
+use crate::scene::{Body, BodyId, Effect, Effects, Snapshot};
 
 /// A checked request.
 pub struct Neighbours<'a> {
     opponents: Opponents<'a>,
     request: &'a NearestBodies,
     wants: Wants,
+    coverage: Coverage,
 }
 
 /// What is asked about, in its place.
@@ -44,7 +46,14 @@ impl<'a> Neighbours<'a> {
             return Err(Refused::Invalid { field: "count".to_owned(), problem });
         }
         let wants = request.context.wants.closed();
-        Ok(Self { opponents: Opponents::new(snapshot, &request.context)?, request, wants })
+        let opponents = Opponents::new(snapshot, &request.context)?;
+        let id = |subject: &Subject| match subject {
+            Subject::Body(id) => Some(*id),
+            Subject::All | Subject::ChangedSince(_) | Subject::Shape { .. } => None,
+        };
+        let bodies: Vec<BodyId> = request.items.iter().filter_map(id).collect();
+        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Distance))?;
+        Ok(Self { opponents, request, wants, coverage })
     }
 
     fn asker(&self, item: usize) -> Result<Asker<'a>, String> {
@@ -205,6 +214,10 @@ impl ItemBatch for Neighbours<'_> {
 
     fn not_run(&self) -> NearestItem {
         NearestItem::without_work(Verdict::NotRun)
+    }
+
+    fn coverage(&self) -> Coverage {
+        self.coverage.clone()
     }
 
     fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> NearestItem {

@@ -3,10 +3,11 @@
 
 use super::answer::Refused;
 use super::context::Sieve;
+use super::declared::{Coverage, coverage, effects_of};
 use super::request::Context;
 use crate::geometry::Shape;
 use crate::narrow_phase::Solver;
-use crate::scene::{Body, BodyId, Snapshot};
+use crate::scene::{Asker, Body, BodyId, Effects, Snapshot};
 
 /// A request's context, checked against the scene.
 pub(super) struct Opponents<'a> {
@@ -29,6 +30,15 @@ impl<'a> Opponents<'a> {
         Self::new(snapshot, context)
     }
 
+    /// Checks what the scene declares of these bodies, for a question that wants these effects beside what its context says.
+    pub fn coverage(&self, bodies: &[BodyId], besides: Effects) -> Result<Coverage, Refused> {
+        if bodies.is_empty() {
+            return Ok(Coverage::default());
+        }
+        let wanted = effects_of(self.context.wants, self.context.margin).and(besides);
+        coverage(self.snapshot, &Asker::Bodies(bodies), self.context, wanted)
+    }
+
     /// No pair has a larger margin; metres.
     pub fn largest_margin(&self, own: Option<&Body>) -> f64 {
         let of_scene = if own.is_some() { self.snapshot.largest_margin() } else { 0.0 };
@@ -46,7 +56,8 @@ impl<'a> Opponents<'a> {
             return other.meets(layers, mask).then_some(self.context.margin);
         };
         let admitted = if self.sieve.disregards_allowed_collisions() {
-            other.enabled && own.meets(other.layers, other.mask)
+            let declared_empty = self.snapshot.is_declared_empty(own.member(), other.member());
+            other.enabled && own.meets(other.layers, other.mask) && !declared_empty
         } else {
             self.snapshot.admits(own, other)
         };

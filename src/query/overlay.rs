@@ -152,6 +152,11 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
+    /// The bodies that links hold.
+    pub fn held_bodies(&self) -> Vec<BodyId> {
+        self.held.iter().map(|held| held.body).collect()
+    }
+
     /// For questions that are not about one robot.
     pub fn check_nothing_held(&self) -> Result<(), Refused> {
         if self.held.is_empty() {

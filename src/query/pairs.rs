@@ -192,7 +192,8 @@ impl<'a> Pairs<'a> {
 
     pub(super) fn admits(&self, one: &Body, other: &Body) -> bool {
         if self.sieve.disregards_allowed_collisions() {
-            return other.enabled && one.meets(other.layers, other.mask);
+            let declared_empty = self.snapshot.is_declared_empty(one.member(), other.member());
+            return other.enabled && one.meets(other.layers, other.mask) && !declared_empty;
         }
         self.snapshot.admits(one, other)
     }

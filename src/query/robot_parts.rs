@@ -123,7 +123,11 @@ impl<'a> RobotParts<'a> {
         }
         let parts_of = |link: u32| first[link as usize]..first[link as usize + 1];
         let mut pairs = Vec::with_capacity(links.len());
+        let disregards = self.sieve.disregards_allowed_collisions();
         for &(a, b) in links {
+            if disregards && self.snapshot.is_declared_empty(self.robot.link(a), self.robot.link(b)) {
+                continue; // The others were left out by the scene.
+            }
             let margin = self.snapshot.margin(self.robot.link(a), self.robot.link(b));
             let margin = margin.unwrap_or(self.context.margin);
             for i in parts_of(a) {
@@ -145,14 +149,18 @@ impl<'a> RobotParts<'a> {
     }
 
     fn margin_of_link(&self, link: u32, body: &Body) -> Option<f64> {
-        let admits = self.sieve.disregards_allowed_collisions() || self.snapshot.admits_link(self.robot, link, body);
+        let admits = if self.sieve.disregards_allowed_collisions() {
+            !self.snapshot.is_declared_empty(self.robot.link(link), body.member())
+        } else {
+            self.snapshot.admits_link(self.robot, link, body)
+        };
         let own = || self.snapshot.margin(self.robot.link(link), body.member()).unwrap_or(self.context.margin);
         admits.then(own)
     }
 
     fn margin_of_bodies(&self, one: &Body, other: &Body) -> Option<f64> {
         let admits = if self.sieve.disregards_allowed_collisions() {
-            one.meets(other.layers, other.mask)
+            one.meets(other.layers, other.mask) && !self.snapshot.is_declared_empty(one.member(), other.member())
         } else {
             self.snapshot.admits(one, other)
         };

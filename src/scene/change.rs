@@ -38,6 +38,7 @@ impl Snapshot {
             Edit::RemoveRobot { robot } => self.remove_robot(robot)?,
             Edit::SetAllowedCollision { a, b, allowed } => self.set_allowed_collision(a, b, *allowed, limits)?,
             Edit::SetPairMargin { a, b, margin } => self.set_pair_margin(a, b, *margin, limits)?,
+            Edit::DeclareEffects { a, b, effects } => self.declare_effects(a, b, *effects, limits)?,
         }
         Ok(None)
     }
@@ -46,7 +47,7 @@ impl Snapshot {
     pub(super) fn settle(&mut self, before: &Self, revision: Revision) {
         self.revision = revision;
         self.broad_phase.settle();
-        if !self.allowed.is_as_in(&before.allowed) {
+        if !self.allowed.is_as_in(&before.allowed) || !self.effects.is_as_in(&before.effects) {
             self.settle_self_pairs();
         }
         if self.largest_margin_gone {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{BodyId, Party};
+use super::{BodyId, Effects, Party};
 use crate::geometry::{Aabb, Pose, Shape, Vec3};
 use crate::robot::RobotModel;
 
@@ -112,6 +112,16 @@ pub enum Edit {
         /// Metres, not negative: takes the place of the question's margin for this pair. `None`: the entry is taken
         /// back; taking back what is not there changes nothing.
         margin: Option<f64>,
+    },
+    /// What may be asked of a pair. It replaces an earlier declaration of the same two parties, whichever comes first.
+    DeclareEffects {
+        /// One side.
+        a: Party,
+        /// The other side.
+        b: Party,
+        /// Of none the pair is not looked at. `None`: the declaration is taken back; taking back what is not there changes
+        /// nothing.
+        effects: Option<Effects>,
     },
 }
 

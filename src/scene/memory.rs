@@ -22,7 +22,7 @@ pub struct Memory {
     pub names: usize,
     /// Boxes, and what finds them.
     pub broad_phase: usize,
-    /// Allowed collisions, margins and groups.
+    /// Allowed collisions, margins, declared effects and groups.
     pub entries: usize,
 }
 
@@ -42,7 +42,7 @@ impl Snapshot {
             bodies: self.bodies.memory() + self.bodies.len() * (size_of::<Body>() + COUNTS),
             names: self.names.size() * NAME,
             broad_phase: self.broad_phase.memory(),
-            entries: self.allowed.memory() + self.margins.memory() + self.groups.memory(),
+            entries: self.allowed.memory() + self.margins.memory() + self.effects.memory() + self.groups.memory(),
         }
     }
 
@@ -56,7 +56,8 @@ impl Snapshot {
     /// To be called on a draft whose edits are made, while the revision before is still there.
     pub(super) fn count_written(&mut self, bodies_added: usize) {
         self.written += self.bodies.own_memory() + self.broad_phase.own_memory() + bodies_added * NAME;
-        self.written += self.allowed.own_memory() + self.margins.own_memory() + self.groups.own_memory();
+        self.written += self.allowed.own_memory() + self.margins.own_memory() + self.effects.own_memory();
+        self.written += self.groups.own_memory();
     }
 
     /// A body that a draft puts in place: its bytes count as written.

@@ -1,11 +1,11 @@
-//! How entries for pairs come and go, in the allowed-collision matrix and in the table of margins.
+//! How entries for pairs come and go, in the allowed-collision matrix, in the table of margins and among the declared effects.
 
 use std::sync::Arc;
 
 use super::body_changes::{check_distance, check_group_name};
 use super::change::Fault;
 use super::party::PartyKey;
-use super::{Party, Reason, Snapshot};
+use super::{Effect, Effects, Party, Reason, Snapshot};
 use crate::limits::{LimitExceeded, Limits};
 
 impl Snapshot {
@@ -38,6 +38,7 @@ impl Snapshot {
         if let Some(margin) = margin {
             check_distance(margin, "margin")?;
         }
+        self.check_margin_is_declared((a, b), margin, self.effects.get(a, b), "margin")?;
         let before = self.margins.get(a, b);
         let names = self.names_of([a, b]);
         self.count_entry(before.is_some(), margin.is_some(), (a, b), limits)?;
@@ -52,12 +53,48 @@ impl Snapshot {
         Ok(())
     }
 
+    pub(super) fn declare_effects(
+        &mut self,
+        a: &Party,
+        b: &Party,
+        effects: Option<Effects>,
+        limits: &Limits,
+    ) -> Result<(), Fault> {
+        let (a, b) = self.pair_of_keys(a, b, limits)?;
+        self.check_margin_is_declared((a, b), self.margins.get(a, b), effects, "effects")?;
+        let before = self.effects.get(a, b);
+        let names = self.names_of([a, b]);
+        self.count_entry(before.is_some(), effects.is_some(), (a, b), limits)?;
+        if before != effects {
+            self.changes.entry(a, b, names);
+        }
+        self.effects.set(a, b, effects);
+        Ok(())
+    }
+
+    /// A margin above zero is an effect: two parties that are declared without it have none entered.
+    fn check_margin_is_declared(
+        &self,
+        (a, b): (PartyKey, PartyKey),
+        margin: Option<f64>,
+        effects: Option<Effects>,
+        field: &'static str,
+    ) -> Result<(), Fault> {
+        let Some(margin) = margin.filter(|margin| *margin > 0.0) else { return Ok(()) };
+        if effects.is_none_or(|effects| effects.contains(Effect::Margin)) {
+            return Ok(());
+        }
+        let party = |key| self.party(key, &|_| None).unwrap_or(Party::Everything);
+        Err(Reason::NotDeclared { a: party(a), b: party(b), effect: Effect::Margin, margin }.of(field))
+    }
+
     /// Takes back all entries that name a party which leaves the scene.
     pub(super) fn forget_entries_of(&mut self, party: PartyKey) {
         let mut others = self.allowed.forget(party);
         let with_margins = self.margins.forget(party);
         self.largest_margin_gone |= !with_margins.is_empty();
         others.extend(with_margins);
+        others.extend(self.effects.forget(party));
         others.into_iter().filter(|other| other.is_group()).for_each(|other| self.groups.drop_use(other));
     }
 
@@ -103,7 +140,7 @@ impl Snapshot {
         limits: &Limits,
     ) -> Result<(), Fault> {
         if exists && !existed {
-            let entries = self.allowed.len() + self.margins.len() + 1;
+            let entries = self.allowed.len() + self.margins.len() + self.effects.len() + 1;
             LimitExceeded::check("max_pair_entries", entries, limits.max_pair_entries)
                 .map_err(|limit| Reason::Limit(limit).of("a"))?;
         }

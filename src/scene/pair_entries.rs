@@ -1,7 +1,7 @@
 //! What do a scene's tables say, as a caller would have made the entries? For those who keep a copy of a scene.
 
 use super::party::PartyKey;
-use super::{BodyRef, Changes, Party, Snapshot};
+use super::{BodyRef, Changes, Effects, Party, Snapshot};
 
 /// All that the tables say of two parties.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub struct PairEntry {
     pub allowed: Option<bool>,
     /// The margin of exactly these two, metres; `None`: no entry.
     pub margin: Option<f64>,
+    /// What is declared that may be asked of exactly these two; `None`: nothing is declared.
+    pub effects: Option<Effects>,
 }
 
 impl Snapshot {
@@ -21,8 +23,9 @@ impl Snapshot {
     #[must_use]
     pub fn pair_entries(&self) -> Vec<PairEntry> {
         let allowed = self.allowed.halves().map(|(a, b, _)| (a, b));
-        let mut pairs: Vec<_> =
-            allowed.chain(self.margins.halves().map(|(a, b, _)| (a, b))).filter(|(a, b)| a <= b).collect();
+        let margins = self.margins.halves().map(|(a, b, _)| (a, b));
+        let effects = self.effects.halves().map(|(a, b, _)| (a, b));
+        let mut pairs: Vec<_> = allowed.chain(margins).chain(effects).filter(|(a, b)| a <= b).collect();
         pairs.sort_unstable();
         pairs.dedup();
         pairs.into_iter().filter_map(|(a, b)| self.entry(a, b, &|_| None)).collect()
@@ -42,11 +45,12 @@ impl Snapshot {
         let keys = self.known_key(&a).zip(self.known_key(&b));
         let allowed = keys.and_then(|(a, b)| self.allowed.get(a, b));
         let margin = keys.and_then(|(a, b)| self.margins.get(a, b));
-        Some(PairEntry { a, b, allowed, margin })
+        let effects = keys.and_then(|(a, b)| self.effects.get(a, b));
+        Some(PairEntry { a, b, allowed, margin, effects })
     }
 
     /// Whom a key means, if it is still there.
-    fn party(&self, key: PartyKey, forgotten: &dyn Fn(PartyKey) -> Option<String>) -> Option<Party> {
+    pub(super) fn party(&self, key: PartyKey, forgotten: &dyn Fn(PartyKey) -> Option<String>) -> Option<Party> {
         if key == PartyKey::EVERYTHING {
             return Some(Party::Everything);
         }

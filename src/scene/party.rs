@@ -1,10 +1,12 @@
 //! Whom does an entry for pairs speak of? One body or link, all of a group or robot, or everything.
 
+use std::fmt;
+
 use super::BodyId;
 use super::edit::BodyRef;
 
-/// One side of an entry of the allowed-collision matrix or of the table of margins, as a caller names it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// One side of an entry of the allowed-collision matrix, of the table of margins or of the declared effects, as a caller names it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Party {
     /// One body.
     Body(BodyRef),
@@ -21,6 +23,19 @@ pub enum Party {
     Robot(String),
     /// Every body and every link.
     Everything,
+}
+
+impl fmt::Display for Party {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Body(BodyRef::Id(id)) => write!(f, "body {id}"),
+            Self::Body(BodyRef::Name(name)) => write!(f, "body {name:?}"),
+            Self::Link { robot, link } => write!(f, "link {robot}/{link}"),
+            Self::Group(name) => write!(f, "group {name:?}"),
+            Self::Robot(name) => write!(f, "robot {name}"),
+            Self::Everything => f.write_str("everything"),
+        }
+    }
 }
 
 /// A party as the scene knows it: what kind it is and its number, in one integer. Numbers are never used again, so a

@@ -1,6 +1,6 @@
 //! Why was a list of edits refused? Then nothing of it was done.
 
-use super::{BodyId, Revision};
+use super::{BodyId, Effect, Party, Revision};
 use crate::geometry::InvalidShape;
 use crate::limits::LimitExceeded;
 
@@ -83,6 +83,18 @@ pub enum Reason {
     /// An entry for a pair of a body or link with itself.
     #[error("a body or link makes no pair with itself")]
     PairWithItself,
+    /// A margin above zero for a pair whose declared effects are without `margin`.
+    #[error("the pair of {a} and {b} is declared without the effect `{effect}`, and has a margin of {margin} m")]
+    NotDeclared {
+        /// One side.
+        a: Party,
+        /// The other side.
+        b: Party,
+        /// The effect that is lacking.
+        effect: Effect,
+        /// Metres.
+        margin: f64,
+    },
     /// NaN or infinite.
     #[error("not a finite number")]
     NotFinite,

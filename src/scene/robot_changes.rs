@@ -24,7 +24,7 @@ impl Snapshot {
         LimitExceeded::check("max_robots_in_scene", self.robots.len() + 1, limits.max_robots_in_scene)
             .map_err(|limit| Reason::Limit(limit).of("name"))?;
         let mut robot = RobotInScene::new(name.into(), Arc::clone(model), *base, self.next_link);
-        robot.self_pairs = robot.self_pairs_under(&self.allowed);
+        robot.self_pairs = robot.self_pairs_under(&self.allowed, &self.effects);
         self.next_link += model.links().len() as u64;
         self.changes.robot(&robot.name, ChangeKinds::ADDED);
         let place = self.robots.partition_point(|other| *other.name < *name);
@@ -60,7 +60,7 @@ impl Snapshot {
     pub(super) fn settle_self_pairs(&mut self) {
         for place in 0..self.robots.len() {
             let robot = &self.robots[place];
-            let pairs = robot.self_pairs_under(&self.allowed);
+            let pairs = robot.self_pairs_under(&self.allowed, &self.effects);
             if pairs != robot.self_pairs {
                 Arc::make_mut(&mut Arc::make_mut(&mut self.robots)[place]).self_pairs = pairs;
             }

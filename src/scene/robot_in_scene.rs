@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Effects;
 use super::pair_table::PairTable;
 use super::party::{Member, PartyKey};
 use crate::geometry::Pose;
@@ -17,7 +18,7 @@ pub struct RobotInScene {
     /// The root link's frame in the world, metres.
     pub base: Pose,
     /// Pairs of links that are held against each other, each with the lower index first, sorted: those of the model,
-    /// less the pairs whose collision the scene allows, and with the excluded ones that the scene wants looked at.
+    /// less the pairs whose collision the scene allows or that it declares empty, and with the excluded ones that the scene wants looked at.
     pub self_pairs: Arc<[(u32, u32)]>,
     /// Number of the first link; the others follow.
     pub(super) first_link: u64,
@@ -47,13 +48,18 @@ impl RobotInScene {
     }
 
     /// What [`RobotInScene::self_pairs`] is under a matrix. That the model excludes a pair is as specific as an entry
-    /// for two links: only such an entry of the scene brings the pair back.
-    pub(super) fn self_pairs_under(&self, allowed: &PairTable<bool>) -> Arc<[(u32, u32)]> {
+    /// for two links: only such an entry of the scene brings the pair back. Pairs that are declared empty are left out.
+    pub(super) fn self_pairs_under(
+        &self,
+        allowed: &PairTable<bool>,
+        effects: &PairTable<Effects>,
+    ) -> Arc<[(u32, u32)]> {
         let tested = self.model.self_pairs().iter().copied();
         let mut pairs: Vec<(u32, u32)> =
             tested.filter(|(a, b)| !allowed.decide(self.link(*a), self.link(*b)).unwrap_or(false)).collect();
         let excluded = self.model.excluded_pairs().iter().map(|excluded| excluded.links);
         pairs.extend(excluded.filter(|(a, b)| allowed.get(self.link_key(*a), self.link_key(*b)) == Some(false)));
+        pairs.retain(|(a, b)| !effects.decide(self.link(*a), self.link(*b)).is_some_and(Effects::is_empty));
         pairs.sort_unstable();
         pairs.into()
     }

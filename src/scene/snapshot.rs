@@ -8,7 +8,7 @@ use super::change_log::ChangeLog;
 use super::groups::Groups;
 use super::id_map::IdMap;
 use super::pair_table::PairTable;
-use super::{Body, BodyId, Epoch, Member, Revision, RobotInScene, SceneOptions};
+use super::{Body, BodyId, BodyRef, Effects, Epoch, Member, Revision, RobotInScene, SceneOptions};
 use crate::broad_phase::BroadPhase;
 
 /// A scene as it was at one revision. It never changes; the next revision shares with it what did not change.
@@ -32,6 +32,7 @@ pub struct Snapshot {
     pub(super) next_link: u64,
     pub(super) allowed: PairTable<bool>,
     pub(super) margins: PairTable<f64>,
+    pub(super) effects: PairTable<Effects>,
     pub(super) largest_margin: f64,
     /// An entry that may have had the largest margin was changed in this draft.
     pub(super) largest_margin_gone: bool,
@@ -57,6 +58,8 @@ impl Snapshot {
             // Looking at a pair is more cautious than allowing its collision.
             allowed: PairTable::new(|a, b| a && b),
             margins: PairTable::new(f64::max),
+            // Looking at more of a pair is more cautious than at less.
+            effects: PairTable::new(Effects::and),
             largest_margin: 0.0,
             largest_margin_gone: false,
             changes: ChangeLog::new(Revision(0)),
@@ -105,6 +108,15 @@ impl Snapshot {
         self.body(*self.names.get(name)?)
     }
 
+    /// A body as an edit or an entry names it.
+    #[must_use]
+    pub fn found(&self, body: &BodyRef) -> Option<&Arc<Body>> {
+        match body {
+            BodyRef::Id(id) => self.body(*id),
+            BodyRef::Name(name) => self.body_named(name),
+        }
+    }
+
     /// The enabled bodies that have bounds; a payload is the number of a [`BodyId`], a box is [`Body::bounds`].
     #[must_use]
     pub fn broad_phase(&self) -> &BroadPhase {
@@ -139,7 +151,7 @@ impl Snapshot {
     /// collides with, and the allowed-collision matrix does not allow their collision.
     #[must_use]
     pub fn admits(&self, a: &Body, b: &Body) -> bool {
-        b.enabled && a.meets(b.layers, b.mask) && !self.is_allowed(a.member(), b.member())
+        b.enabled && a.meets(b.layers, b.mask) && self.is_looked_at(a.member(), b.member())
     }
 
     /// Whether a robot's link, by its index, is held against a body: the body takes part and is in and collides with
@@ -147,7 +159,7 @@ impl Snapshot {
     /// collision.
     #[must_use]
     pub fn admits_link(&self, robot: &RobotInScene, link: u32, body: &Body) -> bool {
-        body.meets(u32::MAX, u32::MAX) && !self.is_allowed(robot.link(link), body.member())
+        body.meets(u32::MAX, u32::MAX) && self.is_looked_at(robot.link(link), body.member())
     }
 
     /// Whether the allowed-collision matrix allows the pair's collision, so that it is not looked at. A pair that no
@@ -159,6 +171,25 @@ impl Snapshot {
     #[must_use]
     pub fn is_allowed(&self, a: Member<'_>, b: Member<'_>) -> bool {
         self.allowed.decide(a, b).unwrap_or(false)
+    }
+
+    /// Whether neither the allowed-collision matrix nor an empty declaration takes the pair out of every question.
+    fn is_looked_at(&self, a: Member<'_>, b: Member<'_>) -> bool {
+        !self.is_allowed(a, b) && !self.is_declared_empty(a, b)
+    }
+
+    /// Whether no effect at all is declared of the pair, so that it is not looked at. The most specific declaration decides, as in
+    /// [`Snapshot::is_allowed`]; among those of the same rank the effects of all of them. A pair that none speaks of permits
+    /// everything.
+    #[must_use]
+    pub fn is_declared_empty(&self, a: Member<'_>, b: Member<'_>) -> bool {
+        self.declared(a, b).is_some_and(Effects::is_empty)
+    }
+
+    /// What may be asked of the pair, where a declaration speaks of it.
+    #[must_use]
+    pub fn declared(&self, a: Member<'_>, b: Member<'_>) -> Option<Effects> {
+        self.effects.decide(a, b)
     }
 
     /// The margin for a pair, metres, where an entry speaks of it; it takes the place of the question's. The most

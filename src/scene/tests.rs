@@ -2,6 +2,7 @@
 //! that must be accepted.
 
 mod changes;
+mod declared;
 mod entries;
 mod history;
 mod memory;
@@ -89,6 +90,10 @@ fn allow(a: Party, b: Party, allowed: Option<bool>) -> Edit {
 
 fn margin(a: Party, b: Party, margin: Option<f64>) -> Edit {
     Edit::SetPairMargin { a, b, margin }
+}
+
+fn declare(a: Party, b: Party, effects: Option<Effects>) -> Edit {
+    Edit::DeclareEffects { a, b, effects }
 }
 
 fn admits(scene: &Scene, a: &str, b: &str) -> bool {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::pair_table::PairTable;
 use super::party::PartyKey;
-use super::{Body, Snapshot};
+use super::{Body, Effect, Snapshot};
 use crate::broad_phase::BroadPhaseDefect;
 
 /// What is wrong with a snapshot. None of these can be reached through edits; tests and fuzzers look.
@@ -84,14 +84,14 @@ impl Snapshot {
         for robot in self.robots() {
             let own_links = robot.link_keys().all(|key| key < PartyKey::link(self.next_link) && links.insert(key));
             let own_name = !self.names.contains_key(&robot.name);
-            if !own_links || !own_name || robot.self_pairs != robot.self_pairs_under(&self.allowed) {
+            if !own_links || !own_name || robot.self_pairs != robot.self_pairs_under(&self.allowed, &self.effects) {
                 return Err(SnapshotDefect::Robot { robot: robot.name.to_string() });
             }
         }
         Ok(())
     }
 
-    /// Looks at both tables, and at the groups that live by being used.
+    /// Looks at the tables, and at the groups that live by being used.
     fn check_entries(&self) -> Result<(), SnapshotDefect> {
         let mut uses: BTreeMap<PartyKey, usize> = BTreeMap::new();
         self.bodies().flat_map(|body| body.group_keys.iter()).for_each(|key| *uses.entry(*key).or_default() += 1);
@@ -100,6 +100,11 @@ impl Snapshot {
         ones.insert(PartyKey::EVERYTHING);
         check_table(&self.allowed, &ones, &mut uses)?;
         check_table(&self.margins, &ones, &mut uses)?;
+        check_table(&self.effects, &ones, &mut uses)?;
+        let undeclared = |(a, b, margin): (PartyKey, PartyKey, f64)| {
+            margin > 0.0 && self.effects.get(a, b).is_some_and(|effects| !effects.contains(Effect::Margin))
+        };
+        check(!self.margins.halves().any(undeclared), "a margin is entered for parties declared without one")?;
         check(uses.len() == self.groups.len(), "there are groups without use")?;
         check(uses.iter().all(|(key, count)| self.groups.uses(*key) == *count), "uses of a group are miscounted")?;
         let largest = self.margins.values().fold(0.0, f64::max);

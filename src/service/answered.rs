@@ -178,7 +178,7 @@ impl<T: CountedItem> From<&Answers<T>> for Answered {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::query::ItemAnswer;
+    use crate::query::{Coverage, ItemAnswer};
     use crate::scene::{Epoch, Revision};
 
     #[test]
@@ -192,6 +192,7 @@ mod tests {
             items,
             stopped_at: None,
             out_of_time: true,
+            coverage: Coverage::default(),
             cost: Cost { pairs: 3, ..Cost::default() },
         };
         let answered = Answered::from(&answer);

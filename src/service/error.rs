@@ -4,7 +4,7 @@
 
 use crate::limits::LimitExceeded;
 use crate::query::{NotSupposed, Refused, field_of};
-use crate::scene::{Epoch, Reason, Refusal, Revision};
+use crate::scene::{Effect, Epoch, Party, Reason, Refusal, Revision};
 
 /// Why a request was not answered.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -40,6 +40,16 @@ pub enum ServiceError {
         field: String,
         /// Why.
         problem: String,
+    },
+    /// An effect is wanted that the scene does not declare for a pair.
+    #[error("the pair of {a} and {b} is declared without the effect `{effect}`, which is wanted")]
+    EffectNotDeclared {
+        /// Which.
+        effect: Effect,
+        /// One side.
+        a: Party,
+        /// The other side.
+        b: Party,
     },
     /// An output whose code was left out of the daemon.
     #[error("{field}: this daemon was built without the effect `{effect}`")]
@@ -162,7 +172,8 @@ impl From<Refusal> for ServiceError {
             | Reason::BodyRemoved { .. }
             | Reason::UnknownBody { .. }
             | Reason::UnknownRobot { .. }
-            | Reason::UnknownLink { .. } => Self::EditRefused { field, problem },
+            | Reason::UnknownLink { .. }
+            | Reason::NotDeclared { .. } => Self::EditRefused { field, problem },
         }
     }
 }
@@ -173,6 +184,7 @@ impl From<Refused> for ServiceError {
             Refused::Invalid { field, problem } => Self::Invalid { field, problem },
             Refused::Gone { asked, oldest } => Self::RevisionGone { asked, oldest },
             Refused::NotFound { what, name, revision: _ } => Self::NotFound { what, name },
+            Refused::NotDeclared { effect, a, b } => Self::EffectNotDeclared { effect, a, b },
             Refused::NotBuilt { field, effect } => Self::EffectNotBuilt { field, effect },
         }
     }

@@ -40,7 +40,7 @@ pub struct Outcome {
 impl Outcome {
     /// Everything that can become of a call. But for the first three, these are the names that every door tells its callers
     /// (`ErrorReason` in `proto/clearance/v1`), in small letters.
-    pub const WORDS: [&'static str; 21] = [
+    pub const WORDS: [&'static str; 22] = [
         "ok",
         "abandoned",
         "other",
@@ -48,6 +48,7 @@ impl Outcome {
         "not_found",
         "already_exists",
         "edit_refused",
+        "effect_not_declared",
         "effect_not_built",
         "key_reused",
         "wrong_epoch",
@@ -83,6 +84,7 @@ impl Outcome {
             ServiceError::NotFound { .. } => "not_found",
             ServiceError::AlreadyExists { .. } => "already_exists",
             ServiceError::EditRefused { .. } => "edit_refused",
+            ServiceError::EffectNotDeclared { .. } => "effect_not_declared",
             ServiceError::EffectNotBuilt { .. } => "effect_not_built",
             ServiceError::KeyReused { .. } => "key_reused",
             ServiceError::WrongEpoch { .. } => "wrong_epoch",

@@ -38,7 +38,28 @@ pub fn calls(model: &str) -> Vec<Call> {
     calls.extend(of_casts());
     calls.extend(refused());
     calls.push(stream());
+    calls.extend(declared());
     calls
+}
+
+/// What the scene declares, and what that leaves out and refuses.
+fn declared() -> Vec<Call> {
+    let party = |kind| Some(v1::Party { kind: Some(kind) });
+    let declare = |a, b, effects: &[v1::Effect]| {
+        let effects = Some(v1::Effects { effects: effects.iter().map(|effect| i32::from(*effect)).collect() });
+        edit(v1::edit::Kind::DeclareEffects(v1::DeclareEffects { a: party(a), b: party(b), effects }))
+    };
+    let body = |name| v1::party::Kind::Body(named(name));
+    let edits = vec![
+        declare(v1::party::Kind::Robot("arm".to_owned()), body("table"), &[]),
+        declare(body("wedge"), v1::party::Kind::Everything(v1::Everything {}), &[v1::Effect::Witness]),
+    ];
+    let depth = wanting(true, false, true, false);
+    vec![
+        ask("Scenes/Apply", apply(edits)),
+        ask("Queries/CheckStates", of_states(&STATES[..1], wanting(true, true, false, false))),
+        ask("Queries/CheckStates", of_states(&STATES[..1], depth)),
+    ]
 }
 
 /// Uploads and loads the robot; the answer to the last call has its id.

@@ -7,6 +7,7 @@ mod changed_since;
 mod clearance;
 mod contacts;
 mod edges;
+mod effects;
 mod motions;
 mod moving_scene;
 mod overlays;

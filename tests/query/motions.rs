@@ -308,7 +308,7 @@ fn bad_motions_are_refused_by_item_and_field() {
     let refused = |question: &CheckMotions| match Prepared::check_motions(&snapshot, question).err().unwrap() {
         Refused::Invalid { field, problem } => format!("{field}: {problem}"),
         Refused::NotFound { what, name, .. } => format!("no {what} {name}"),
-        other @ (Refused::Gone { .. } | Refused::NotBuilt { .. }) => panic!("{other:?}"),
+        other @ (Refused::Gone { .. } | Refused::NotBuilt { .. } | Refused::NotDeclared { .. }) => panic!("{other:?}"),
     };
     assert!(
         refused(&question(&[0.0; 6])).starts_with("positions: 6 numbers"),

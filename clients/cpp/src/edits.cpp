@@ -98,6 +98,16 @@ v1::Edit set_pair_margin(const v1::Party& a, const v1::Party& b, double margin) 
   return edit;
 }
 
+v1::Edit declare_effects(const v1::Party& a, const v1::Party& b, const std::vector<v1::Effect>& effects) {
+  v1::Edit edit;
+  auto& message = *edit.mutable_declare_effects();
+  *message.mutable_a() = a;
+  *message.mutable_b() = b;
+  auto& declared = *message.mutable_effects();
+  for (const v1::Effect effect : effects) declared.add_effects(effect);
+  return edit;
+}
+
 v1::Party one_body(const Body& body) {
   v1::Party party;
   *party.mutable_body() = body.message();

@@ -109,6 +109,7 @@ TEST_CASE("every edit and every shape is taken") {
       allow_collision(one_body("box"), all_links("arm")),
       allow_collision(one_link("arm", "boom"), group("fixtures"), false),
       set_pair_margin(one_body("box"), everything(), 0.1),
+      declare_effects(one_body("box"), everything(), {v1::EFFECT_MARGIN}),
       remove_body("plane"),
   };
   // The same key again is answered, not applied.

@@ -63,6 +63,26 @@ class Scenes(DaemonTest):
         self.assertIsNone(plain.pairs[0].patch)
         self.assertEqual(plain.cost.patch_corners, 0)
 
+    def test_what_is_declared_is_all_that_may_be_asked(self) -> None:
+        crate, shelf = clearance.group("crates"), clearance.group("shelves")
+        self.scene.apply(
+            clearance.add_body("crate", clearance.sphere(0.5), groups=["crates"]),
+            clearance.add_body("shelf", clearance.sphere(0.5), clearance.pose([0.9, 0, 0]), groups=["shelves"]),
+            clearance.declare_effects(crate, shelf, ["distance"]),
+        )
+        with self.assertRaisesRegex(clearance.ClearanceError, "declared without the effect `witness`") as refused:
+            self.scene.distance(want="witness")
+        self.assertEqual((refused.exception.code, refused.exception.reason), ("FAILED_PRECONDITION", "EFFECT_NOT_DECLARED"))
+        self.assertEqual(self.scene.distance(want="distance")[0].verdict, Verdict.COLLISION)
+        self.scene.apply(clearance.declare_effects(crate, shelf, []))
+        answers = self.scene.distance(want="distance")
+        self.assertEqual((answers[0].verdict, answers[0].cost.pairs), (Verdict.FREE, 0))
+        self.assertEqual([(pair.a.group, pair.b.group) for pair in answers.declared_empty], [("crates", "shelves")])
+        self.scene.apply(clearance.declare_effects(crate, shelf, None))
+        self.assertEqual(self.scene.distance(want="witness").declared_empty, ())
+        with self.assertRaisesRegex(ValueError, "effects: 'sound' is none, known are verdict, margin"):
+            clearance.declare_effects(crate, shelf, ["sound"])
+
     def test_distance_gives_bracket_points_and_normal(self) -> None:
         self.scene.apply(
             clearance.add_body("a", clearance.sphere(1.0)),

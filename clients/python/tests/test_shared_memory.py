@@ -88,6 +88,18 @@ class SharedMemoryTest(unittest.TestCase):
         path = self.door.check_path("cell", "arm", [[1.5, -0.5], [0.0, -0.5], [0.0, -0.9]])
         self.assertEqual(path.verdicts.tolist(), [1, 3])
 
+    def test_pairs_declared_empty_are_listed(self) -> None:
+        block = next(body for body in self.scene.contents().bodies)
+        arm, other = clearance.robot("arm"), clearance.body(block.name)
+        positions = [[1.5, -0.5]]
+        self.assertEqual(self.door.check_states("cell", "arm", positions).declared_empty, [])
+        self.scene.apply(clearance.declare_effects(arm, other, []))
+        try:
+            answer = self.door.check_states("cell", "arm", positions)
+            self.assertEqual(answer.declared_empty, [("robot arm", f"body {block.id}")])
+        finally:
+            self.scene.apply(clearance.declare_effects(arm, other, None))
+
     def test_shapes_at_many_poses(self) -> None:
         poses = np.array([[1.0, 0.0, -0.5 + 0.1 * step, 1.0, 0.0, 0.0, 0.0] for step in range(5)])
         answer = self.door.distance("cell", shape=("sphere", [0.1]), poses=poses, sides=True, witness=True)

@@ -76,6 +76,14 @@ export function setPairMargin(a: PartyInit, b: PartyInit, margin: number | undef
   return { kind: { case: "setPairMargin", value: margin === undefined ? { a, b } : { a, b, margin } } };
 }
 
+/**
+ * What may be asked of this pair; with each effect goes what it needs. Of none the pair is not looked at, and answers list it in
+ * their coverage. Undefined: nothing is declared any more.
+ */
+export function declareEffects(a: PartyInit, b: PartyInit, effects: v1.Effect[] | undefined): EditInit {
+  return { kind: { case: "declareEffects", value: effects === undefined ? { a, b } : { a, b, effects: { effects } } } };
+}
+
 /** Sides of an entry for pairs. */
 export function oneBody(body: BodyName): PartyInit {
   return { kind: { case: "body", value: bodyRef(body) } };

@@ -18,6 +18,7 @@ import {
   convex,
   cylinder,
   ellipsoid,
+  declareEffects,
   everything,
   group,
   halfSpace,
@@ -124,6 +125,7 @@ test("every edit and every shape is taken", async (t) => {
     allowCollision(oneBody("box"), allLinks("arm")),
     allowCollision(oneLink("arm", "boom"), group("fixtures"), false),
     setPairMargin(oneBody("box"), everything(), 0.1),
+    declareEffects(oneBody("box"), everything(), [v1.Effect.MARGIN]),
     removeBody("plane"),
   ];
   const once = { expectedRevision: applied.revision, expectedEpoch: applied.epoch, idempotencyKey: "once" };

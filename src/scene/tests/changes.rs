@@ -71,9 +71,10 @@ impl Seen {
         if let Some((name, kinds)) = robot {
             *self.robots.entry(name.clone()).or_default() |= kinds;
         }
-        if matches!(edit, Edit::SetAllowedCollision { .. } | Edit::SetPairMargin { .. }) {
+        if matches!(edit, Edit::SetAllowedCollision { .. } | Edit::SetPairMargin { .. } | Edit::DeclareEffects { .. }) {
             self.entries.extend(differing(&before.allowed, &after.allowed));
             self.entries.extend(differing(&before.margins, &after.margins));
+            self.entries.extend(differing(&before.effects, &after.effects));
         }
     }
 

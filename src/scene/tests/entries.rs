@@ -134,7 +134,7 @@ fn entries_are_told_as_they_were_made() {
         margin(group("later"), group("later"), Some(0.125)),
     ];
     apply(&mut scene, &edits);
-    let entry = |a: Party, b: Party, allowed, margin| PairEntry { a, b, allowed, margin };
+    let entry = |a: Party, b: Party, allowed, margin| PairEntry { a, b, allowed, margin, effects: None };
     let robot = || Party::Robot("arm".to_owned());
     let has = |entries: &[PairEntry], wanted: &PairEntry| {
         let turned = PairEntry { a: wanted.b.clone(), b: wanted.a.clone(), ..wanted.clone() };

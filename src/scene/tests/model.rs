@@ -11,6 +11,7 @@ pub(super) struct Model {
     pub(super) robots: Vec<String>,
     pub(super) allowed: Vec<(Side, Side, bool)>,
     pub(super) margins: Vec<(Side, Side, f64)>,
+    pub(super) effects: Vec<(Side, Side, Effects)>,
     given: u64,
 }
 
@@ -103,8 +104,21 @@ impl Model {
                 if margin.is_some_and(|margin| !(0.0..f64::INFINITY).contains(&margin)) {
                     return None;
                 }
+                let declared = self.effects.iter().find(|entry| is_of(entry, &a, &b));
+                if *margin > Some(0.0) && declared.is_some_and(|(_, _, effects)| !effects.contains(Effect::Margin)) {
+                    return None;
+                }
                 self.margins.retain(|entry| !is_of(entry, &a, &b));
                 self.margins.extend(margin.map(|margin| (a, b, margin)));
+            }
+            Edit::DeclareEffects { a, b, effects } => {
+                let (a, b) = self.sides(a, b)?;
+                let margin = self.margins.iter().any(|entry| is_of(entry, &a, &b) && entry.2 > 0.0);
+                if margin && effects.is_some_and(|effects| !effects.contains(Effect::Margin)) {
+                    return None;
+                }
+                self.effects.retain(|entry| !is_of(entry, &a, &b));
+                self.effects.extend(effects.map(|effects| (a, b, effects)));
             }
         }
         Some(())
@@ -125,6 +139,15 @@ impl Model {
 
     pub(super) fn margin(&self, a: &Answers, b: &Answers) -> Option<f64> {
         most_specific(&self.margins, a, b).into_iter().reduce(f64::max)
+    }
+
+    pub(super) fn declared(&self, a: &Answers, b: &Answers) -> Option<Effects> {
+        most_specific(&self.effects, a, b).into_iter().reduce(Effects::and)
+    }
+
+    /// Whether an empty declaration takes the pair out.
+    pub(super) fn is_empty(&self, a: &Answers, b: &Answers) -> bool {
+        self.declared(a, b) == Some(Effects::NONE)
     }
 
     fn find(&self, body: &BodyRef) -> Option<usize> {
@@ -161,6 +184,7 @@ impl Model {
     fn forget(&mut self, gone: impl Fn(&Side) -> bool) {
         self.allowed.retain(|(a, b, _)| !gone(a) && !gone(b));
         self.margins.retain(|(a, b, _)| !gone(a) && !gone(b));
+        self.effects.retain(|(a, b, _)| !gone(a) && !gone(b));
     }
 }
 

@@ -21,6 +21,8 @@ struct Reached {
     allowed_pairs: usize,
     looked_at_despite_an_entry: usize,
     margins: usize,
+    declared: usize,
+    declared_empty: usize,
     allowed_links: usize,
     self_pairs_changed: usize,
     gone: usize,
@@ -62,6 +64,12 @@ fn inflations() -> impl Strategy<Value = (f64, f64)> {
     (scales, prop_oneof![20 => select(vec![0.0, 0.25]), 1 => select(vec![-0.1, f64::INFINITY])])
 }
 
+fn declared() -> impl Strategy<Value = Option<Effects>> {
+    let some =
+        prop::sample::subsequence(Effect::EACH.to_vec(), 0..=3).prop_map(|effects| effects.into_iter().collect());
+    prop_oneof![2 => Just(None), 3 => Just(Some(Effects::NONE)), 3 => some.prop_map(Some)]
+}
+
 fn edits(model: Arc<RobotModel>) -> impl Strategy<Value = Edit> {
     let layers = || select(vec![u32::MAX, u32::MAX, 1, 2, 3, 0]);
     let new_body = (names(), poses(), inflations(), group_names(), layers(), layers()).prop_map(
@@ -91,6 +99,7 @@ fn edits(model: Arc<RobotModel>) -> impl Strategy<Value = Edit> {
         1 => robots().prop_map(|robot| Edit::RemoveRobot { robot }),
         7 => (parties(), parties(), any::<Option<bool>>()).prop_map(|(a, b, allowed)| allow(a, b, allowed)),
         4 => (parties(), parties(), prop::option::weighted(0.8, margins)).prop_map(|(a, b, value)| margin(a, b, value)),
+        4 => (parties(), parties(), declared()).prop_map(|(a, b, effects)| declare(a, b, effects)),
     ]
 }
 
@@ -171,7 +180,11 @@ fn compare(snapshot: &Snapshot, model: &Model, reached: &mut Reached) {
             let (a, b) = (Model::body_answers(x), Model::body_answers(y));
             let entry = model.is_allowed(&a, &b);
             let met = x.enabled && y.enabled && x.layers & y.mask != 0 && y.layers & x.mask != 0;
-            assert_eq!(snapshot.admits(i, j), met && entry != Some(true));
+            let empty = model.is_empty(&a, &b);
+            assert_eq!(snapshot.admits(i, j), met && entry != Some(true) && !empty);
+            assert_eq!(snapshot.declared(i.member(), j.member()), model.declared(&a, &b));
+            reached.declared += usize::from(model.declared(&a, &b).is_some() && !empty);
+            reached.declared_empty += usize::from(empty);
             assert_eq!(snapshot.is_allowed(i.member(), j.member()), entry == Some(true));
             assert_eq!(snapshot.margin(i.member(), j.member()), model.margin(&a, &b));
             reached.allowed_pairs += usize::from(entry == Some(true));
@@ -195,7 +208,7 @@ fn compare_robots(snapshot: &Snapshot, model: &Model, reached: &mut Reached) {
                 let b = Model::body_answers(expected);
                 let allowed = model.is_allowed(a, &b) == Some(true);
                 let met = expected.enabled && expected.layers != 0 && expected.mask != 0;
-                assert_eq!(snapshot.admits_link(robot, link, body), met && !allowed);
+                assert_eq!(snapshot.admits_link(robot, link, body), met && !allowed && !model.is_empty(a, &b));
                 assert_eq!(snapshot.margin(robot.link(link), body.member()), model.margin(a, &b));
                 reached.allowed_links += usize::from(allowed);
             }
@@ -206,7 +219,9 @@ fn compare_robots(snapshot: &Snapshot, model: &Model, reached: &mut Reached) {
             .filter(|(i, j)| {
                 let (a, b) = (&answers[*i as usize], &answers[*j as usize]);
                 let exact = model.is_allowed(&a[..1].to_vec(), &b[..1].to_vec());
-                if (*i, *j) == (0, 2) { model.is_allowed(a, b) != Some(true) } else { exact == Some(false) }
+                let looked_at =
+                    if (*i, *j) == (0, 2) { model.is_allowed(a, b) != Some(true) } else { exact == Some(false) };
+                looked_at && !model.is_empty(a, b)
             })
             .collect();
         assert_eq!(*robot.self_pairs, pairs);
@@ -232,6 +247,8 @@ fn random_lists_of_edits_agree_with_the_model() {
         allowed_pairs,
         looked_at_despite_an_entry,
         margins,
+        declared,
+        declared_empty,
         allowed_links,
         self_pairs_changed,
         gone,
@@ -244,6 +261,8 @@ fn random_lists_of_edits_agree_with_the_model() {
         ("pair allowed by an entry", allowed_pairs),
         ("pair looked at by an entry", looked_at_despite_an_entry),
         ("pair with a margin", margins),
+        ("pair with declared effects", declared),
+        ("pair declared empty", declared_empty),
         ("link allowed by an entry", allowed_links),
         ("other self-collision pairs than the model's", self_pairs_changed),
         ("revision that is gone", gone),

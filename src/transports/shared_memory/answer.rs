@@ -46,6 +46,11 @@ pub fn message(frame: &Frame, answer: &Answer, wants: Wants, motions: bool) -> V
         brackets(&mut writer, kind::SCENE_LOWER, items, |item| item.nearest_scene.as_ref());
     }
     problems(&mut writer, items.iter().map(|item| item.problem.as_deref()));
+    let left_out = &answer.coverage.declared_empty;
+    if !left_out.is_empty() {
+        let names: Vec<String> = left_out.iter().flat_map(|(a, b)| [a.to_string(), b.to_string()]).collect();
+        writer.texts(kind::DECLARED_EMPTY, names.iter().map(String::as_str));
+    }
     if motions {
         motion_columns(&mut writer, items);
     }

@@ -166,6 +166,13 @@ impl Reply {
         let texts = self.sections().and_then(|sections| sections.texts(kind::PROBLEM_TEXTS).ok()).unwrap_or_default();
         items.into_iter().map(|item| item as usize).zip(texts.into_iter().map(str::to_owned)).collect()
     }
+
+    /// Pairs of parties that the scene declares empty and that no item says anything about, by their names.
+    #[must_use]
+    pub fn declared_empty(&self) -> Vec<[String; 2]> {
+        let texts = self.sections().and_then(|sections| sections.texts(kind::DECLARED_EMPTY).ok()).unwrap_or_default();
+        texts.as_chunks::<2>().0.iter().map(|pair| pair.map(str::to_owned)).collect()
+    }
 }
 
 #[cfg(test)]

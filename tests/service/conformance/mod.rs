@@ -7,6 +7,7 @@ mod caps;
 mod casts;
 mod contacts;
 mod decompositions;
+mod effects;
 mod fields;
 mod motions;
 mod overlays;

@@ -36,6 +36,7 @@ fn message(reply: &Reply) -> v1::Answer {
             problems: reply.problems().into_iter().map(problem).collect(),
         }),
         added_bodies: Vec::new(),
+        coverage: None,
         stopped_at: reply.stopped_at().map(|item| item as u32),
         out_of_time: reply.out_of_time(),
         cost: Some(v1::Cost {

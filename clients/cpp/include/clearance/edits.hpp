@@ -44,6 +44,9 @@ v1::Edit remove_robot(const std::string& name);
 v1::Edit allow_collision(const v1::Party& a, const v1::Party& b, bool allowed = true);
 /// The margin of this pair in metres, in place of the question's.
 v1::Edit set_pair_margin(const v1::Party& a, const v1::Party& b, double margin);
+/// What may be asked of a pair; with each effect goes what it needs. Of none the pair is not looked at, and answers list it in
+/// their coverage.
+v1::Edit declare_effects(const v1::Party& a, const v1::Party& b, const std::vector<v1::Effect>& effects);
 
 /// Sides of an entry for pairs.
 v1::Party one_body(const Body& body);

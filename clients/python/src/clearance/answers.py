@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .v1 import geometry_pb2 as geometry
 from .v1 import query_pb2 as messages
+from .v1 import scene_pb2 as scene
 from .v1 import service_pb2 as service
 
 
@@ -224,10 +225,13 @@ class ItemAnswers(list[ItemAnswer]):
 
     #: Names of the bodies that overlays added, by the number of the overlay (0: the common one) and the body's id.
     added: dict[tuple[int, int], str]
+    #: Pairs that the scene declares empty: no item says anything of them.
+    declared_empty: tuple[scene.PartyPair, ...]
 
     @classmethod
     def of(cls, answer: messages.Answer) -> ItemAnswers:
         answers = cls(ItemAnswer.of(item) for item in answer.items)
+        answers.declared_empty = tuple(answer.coverage.declared_empty)
         answers.added = {(body.overlay, body.id): body.name for body in answer.added_bodies}
         return answers
 
@@ -267,6 +271,8 @@ class StatesAnswer:
     stopped_at: Optional[int]
     #: Time ran out; states not looked at are `NOT_RUN`.
     out_of_time: bool
+    #: Pairs that the scene declares empty: no verdict says anything of them.
+    declared_empty: tuple[scene.PartyPair, ...]
     cost: Cost = field(repr=False)
 
     @property
@@ -303,6 +309,7 @@ class StatesAnswer:
             problems={each.item: each.problem for each in bulk.problems},
             stopped_at=answer.stopped_at if answer.HasField("stopped_at") else None,
             out_of_time=answer.out_of_time,
+            declared_empty=tuple(answer.coverage.declared_empty),
             cost=Cost.of(answer.cost),
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Union
+from typing import Iterable, Optional, Sequence, Union
 
 from numpy.typing import ArrayLike
 
@@ -119,3 +119,21 @@ def allow_collision(a: Party, b: Party, allowed: Optional[bool] = True) -> Edit:
 def set_pair_margin(a: Party, b: Party, margin: Optional[float]) -> Edit:
     """The margin of this pair in metres, in place of the question's. None: no entry any more."""
     return Edit(set_pair_margin=messages.SetPairMargin(a=a, b=b, margin=margin))
+
+
+def declare_effects(a: Party, b: Party, effects: Optional[Iterable[str]]) -> Edit:
+    """What may be asked of this pair: `verdict`, `margin`, `distance`, `witness`, `depth`, `patch`, `motion`, `derivatives`, `events`.
+
+    With each goes what it needs. Of none the pair is not looked at, and answers list it in `declared_empty`. None: nothing is
+    declared any more.
+    """
+    message = messages.DeclareEffects(a=a, b=b)
+    if effects is not None:
+        message.effects.SetInParent()
+        for effect in effects:
+            try:
+                message.effects.effects.append(messages.Effect.Value(f"EFFECT_{effect.upper()}"))
+            except ValueError:
+                known = ", ".join(name.removeprefix("EFFECT_").lower() for name, number in messages.Effect.items() if number)
+                raise ValueError(f"effects: {effect!r} is none, known are {known}") from None
+    return Edit(declare_effects=message)

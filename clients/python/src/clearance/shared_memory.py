@@ -99,8 +99,16 @@ class _Line(ctypes.Structure):
 class Answer(Mapping[str, np.ndarray]):
     """The columns of an answer by name, each a numpy array with a row an item (or a pair, or a hit)."""
 
-    def __init__(self, header: np.void, columns: dict[str, np.ndarray], problems: dict[int, str]):
+    def __init__(
+        self,
+        header: np.void,
+        columns: dict[str, np.ndarray],
+        problems: dict[int, str],
+        declared_empty: list[tuple[str, str]],
+    ):
         self._columns = columns
+        #: Pairs that the scene declares empty, by the names of their sides: the answer says nothing of them.
+        self.declared_empty = declared_empty
         #: Which state of the scene was asked.
         self.epoch, self.revision = int(header["epoch"]), int(header["revision"])
         flags = int(header["flags"])
@@ -419,7 +427,8 @@ def _read(message: bytes, nonce: bytes) -> Optional[Answer]:
         raise _refusal(int(header["code"]), columns)
     texts = columns.pop("problem_texts", np.empty(0, dtype="u1")).tobytes().decode().split("\0")
     items = columns.pop("problem_items", np.empty(0, dtype="<u4"))
-    return Answer(header, columns, dict(zip(items.tolist(), texts)))
+    sides = columns.pop("declared_empty", np.empty(0, dtype="u1")).tobytes().decode().split("\0")
+    return Answer(header, columns, dict(zip(items.tolist(), texts)), list(zip(sides[:-1:2], sides[1::2])))
 
 
 def _refusal(code: int, columns: dict[str, np.ndarray]) -> ClearanceError:

@@ -4,7 +4,7 @@ Made from src/transports/shared_memory/layout.rs by `cargo test --test service h
 """
 
 MAGIC = bytes.fromhex("434c5253484d0d0a")
-ABI_HASH = 0x5f1251c2ed734f85
+ABI_HASH = 0x28291629a0787954
 VERSION = 1
 ALIGNMENT = 64
 MOST_SECTIONS = 64
@@ -119,6 +119,7 @@ COLUMNS = {
     "undecided_to": (50, 8, 1),
     "states": (51, 8, 1),
     "response": (52, 1, 1),
+    "declared_empty": (53, 1, 1),
     "nearest_a_kind": (64, 1, 1),
     "nearest_a_id": (65, 8, 1),
     "nearest_a_shape": (66, 4, 1),

@@ -14,7 +14,7 @@ import type { Message } from "@bufbuild/protobuf";
  * Describes the file clearance/v1/scene.proto.
  */
 export const file_clearance_v1_scene: GenFile = /*@__PURE__*/
-  fileDesc("ChhjbGVhcmFuY2UvdjEvc2NlbmUucHJvdG8SDGNsZWFyYW5jZS52MSItCgdCb2R5UmVmEgwKAmlkGAEgASgESAASDgoEbmFtZRgCIAEoCUgAQgQKAmJ5IiYKB0xpbmtSZWYSDQoFcm9ib3QYASABKAkSDAoEbGluaxgCIAEoCSKvAQoFUGFydHkSJQoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmSAASJQoEbGluaxgCIAEoCzIVLmNsZWFyYW5jZS52MS5MaW5rUmVmSAASDwoFZ3JvdXAYAyABKAlIABIPCgVyb2JvdBgEIAEoCUgAEi4KCmV2ZXJ5dGhpbmcYBSABKAsyGC5jbGVhcmFuY2UudjEuRXZlcnl0aGluZ0gAQgYKBGtpbmQiDAoKRXZlcnl0aGluZyLIBQoERWRpdBIpCghhZGRfYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5BZGRCb2R5SAASKwoJbW92ZV9ib2R5GAIgASgLMhYuY2xlYXJhbmNlLnYxLk1vdmVCb2R5SAASLwoLcmVtb3ZlX2JvZHkYAyABKAsyGC5jbGVhcmFuY2UudjEuUmVtb3ZlQm9keUgAEjMKDXJlcGxhY2Vfc2hhcGUYBCABKAsyGi5jbGVhcmFuY2UudjEuUmVwbGFjZVNoYXBlSAASLQoKc2V0X2dyb3VwcxgFIAEoCzIXLmNsZWFyYW5jZS52MS5TZXRHcm91cHNIABItCgpzZXRfbGF5ZXJzGAYgASgLMhcuY2xlYXJhbmNlLnYxLlNldExheWVyc0gAEisKCWFkZF9yb2JvdBgHIAEoCzIWLmNsZWFyYW5jZS52MS5BZGRSb2JvdEgAEi0KCm1vdmVfcm9ib3QYCCABKAsyFy5jbGVhcmFuY2UudjEuTW92ZVJvYm90SAASMQoMcmVtb3ZlX3JvYm90GAkgASgLMhkuY2xlYXJhbmNlLnYxLlJlbW92ZVJvYm90SAASQgoVc2V0X2FsbG93ZWRfY29sbGlzaW9uGAogASgLMiEuY2xlYXJhbmNlLnYxLlNldEFsbG93ZWRDb2xsaXNpb25IABI2Cg9zZXRfcGFpcl9tYXJnaW4YCyABKAsyGy5jbGVhcmFuY2UudjEuU2V0UGFpck1hcmdpbkgAEi8KC3NldF9lbmFibGVkGAwgASgLMhguY2xlYXJhbmNlLnYxLlNldEVuYWJsZWRIABIzCg1pbnNlcnRfcG9pbnRzGA0gASgLMhouY2xlYXJhbmNlLnYxLkluc2VydFBvaW50c0gAEisKCWNsZWFyX2JveBgOIAEoCzIWLmNsZWFyYW5jZS52MS5DbGVhckJveEgAQgYKBGtpbmQi2AEKB0FkZEJvZHkSDAoEbmFtZRgBIAEoCRIiCgVzaGFwZRgCIAEoCzITLmNsZWFyYW5jZS52MS5TaGFwZRIgCgRwb3NlGAMgASgLMhIuY2xlYXJhbmNlLnYxLlBvc2USDgoGZ3JvdXBzGAQgAygJEhMKBmxheWVycxgFIAEoB0gAiAEBEhEKBG1hc2sYBiABKAdIAYgBARIPCgdwYWRkaW5nGAcgASgBEhIKBXNjYWxlGAggASgBSAKIAQFCCQoHX2xheWVyc0IHCgVfbWFza0IICgZfc2NhbGUiUQoITW92ZUJvZHkSIwoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiAKBHBvc2UYAiABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSJaCgxJbnNlcnRQb2ludHMSIwoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiUKBnBvaW50cxgCIAEoCzIVLmNsZWFyYW5jZS52MS5OdW1iZXJzIlAKCENsZWFyQm94EiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZhIfCgNib3gYAiABKAsyEi5jbGVhcmFuY2UudjEuQWFiYiIxCgpSZW1vdmVCb2R5EiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZiKGAQoMUmVwbGFjZVNoYXBlEiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZhIiCgVzaGFwZRgCIAEoCzITLmNsZWFyYW5jZS52MS5TaGFwZRIPCgdwYWRkaW5nGAMgASgBEhIKBXNjYWxlGAQgASgBSACIAQFCCAoGX3NjYWxlIkAKCVNldEdyb3VwcxIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSDgoGZ3JvdXBzGAIgAygJImwKCVNldExheWVycxIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSEwoGbGF5ZXJzGAIgASgHSACIAQESEQoEbWFzaxgDIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2siQgoKU2V0RW5hYmxlZBIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSDwoHZW5hYmxlZBgCIAEoCCJJCghBZGRSb2JvdBIMCgRuYW1lGAEgASgJEg0KBW1vZGVsGAIgASgJEiAKBGJhc2UYAyABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSI8CglNb3ZlUm9ib3QSDQoFcm9ib3QYASABKAkSIAoEYmFzZRgCIAEoCzISLmNsZWFyYW5jZS52MS5Qb3NlIhwKC1JlbW92ZVJvYm90Eg0KBXJvYm90GAEgASgJIncKE1NldEFsbG93ZWRDb2xsaXNpb24SHgoBYRgBIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRIeCgFiGAIgASgLMhMuY2xlYXJhbmNlLnYxLlBhcnR5EhQKB2FsbG93ZWQYAyABKAhIAIgBAUIKCghfYWxsb3dlZCJvCg1TZXRQYWlyTWFyZ2luEh4KAWEYASABKAsyEy5jbGVhcmFuY2UudjEuUGFydHkSHgoBYhgCIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRITCgZtYXJnaW4YAyABKAFIAIgBAUIJCgdfbWFyZ2luIowBCgxTY2VuZVN1bW1hcnkSDAoEbmFtZRgBIAEoCRINCgVlcG9jaBgCIAEoBBIQCghyZXZpc2lvbhgDIAEoBBIOCgZib2RpZXMYBCABKA0SDgoGcm9ib3RzGAUgASgNEi0KC2Jyb2FkX3BoYXNlGAYgASgOMhguY2xlYXJhbmNlLnYxLkJyb2FkUGhhc2Ui2QEKBEJvZHkSCgoCaWQYASABKAQSDAoEbmFtZRgCIAEoCRISCgpzaGFwZV9raW5kGAMgASgJEiAKBHBvc2UYBCABKAsyEi5jbGVhcmFuY2UudjEuUG9zZRIOCgZncm91cHMYBSADKAkSDgoGbGF5ZXJzGAYgASgHEgwKBG1hc2sYByABKAcSIgoGYm91bmRzGAggASgLMhIuY2xlYXJhbmNlLnYxLkFhYmISDQoFc2NhbGUYCSABKAESDwoHcGFkZGluZxgKIAEoARIPCgdlbmFibGVkGAsgASgIIk0KDFJvYm90SW5TY2VuZRIMCgRuYW1lGAEgASgJEg0KBW1vZGVsGAIgASgJEiAKBGJhc2UYAyABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSL/AQoNU2NlbmVDb250ZW50cxIMCgRuYW1lGAEgASgJEg0KBWVwb2NoGAIgASgEEhAKCHJldmlzaW9uGAMgASgEEhcKD29sZGVzdF9yZXZpc2lvbhgEIAEoBBIiCgZib2RpZXMYBSADKAsyEi5jbGVhcmFuY2UudjEuQm9keRIqCgZyb2JvdHMYBiADKAsyGi5jbGVhcmFuY2UudjEuUm9ib3RJblNjZW5lEi0KC2Jyb2FkX3BoYXNlGAcgASgOMhguY2xlYXJhbmNlLnYxLkJyb2FkUGhhc2USEgoKYm9keV9jb3VudBgIIAEoBBITCgtib2RpZXNfbGVmdBgJIAEoCCp8CgpCcm9hZFBoYXNlEhsKF0JST0FEX1BIQVNFX1VOU1BFQ0lGSUVEEAASFAoQQlJPQURfUEhBU0VfVFJFRRABEh8KG0JST0FEX1BIQVNFX1NXRUVQX0FORF9QUlVORRACEhoKFkJST0FEX1BIQVNFX0VYSEFVU1RJVkUQA2IGcHJvdG8z", [file_clearance_v1_geometry]);
+  fileDesc("ChhjbGVhcmFuY2UvdjEvc2NlbmUucHJvdG8SDGNsZWFyYW5jZS52MSItCgdCb2R5UmVmEgwKAmlkGAEgASgESAASDgoEbmFtZRgCIAEoCUgAQgQKAmJ5IiYKB0xpbmtSZWYSDQoFcm9ib3QYASABKAkSDAoEbGluaxgCIAEoCSKvAQoFUGFydHkSJQoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmSAASJQoEbGluaxgCIAEoCzIVLmNsZWFyYW5jZS52MS5MaW5rUmVmSAASDwoFZ3JvdXAYAyABKAlIABIPCgVyb2JvdBgEIAEoCUgAEi4KCmV2ZXJ5dGhpbmcYBSABKAsyGC5jbGVhcmFuY2UudjEuRXZlcnl0aGluZ0gAQgYKBGtpbmQiDAoKRXZlcnl0aGluZyKBBgoERWRpdBIpCghhZGRfYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5BZGRCb2R5SAASKwoJbW92ZV9ib2R5GAIgASgLMhYuY2xlYXJhbmNlLnYxLk1vdmVCb2R5SAASLwoLcmVtb3ZlX2JvZHkYAyABKAsyGC5jbGVhcmFuY2UudjEuUmVtb3ZlQm9keUgAEjMKDXJlcGxhY2Vfc2hhcGUYBCABKAsyGi5jbGVhcmFuY2UudjEuUmVwbGFjZVNoYXBlSAASLQoKc2V0X2dyb3VwcxgFIAEoCzIXLmNsZWFyYW5jZS52MS5TZXRHcm91cHNIABItCgpzZXRfbGF5ZXJzGAYgASgLMhcuY2xlYXJhbmNlLnYxLlNldExheWVyc0gAEisKCWFkZF9yb2JvdBgHIAEoCzIWLmNsZWFyYW5jZS52MS5BZGRSb2JvdEgAEi0KCm1vdmVfcm9ib3QYCCABKAsyFy5jbGVhcmFuY2UudjEuTW92ZVJvYm90SAASMQoMcmVtb3ZlX3JvYm90GAkgASgLMhkuY2xlYXJhbmNlLnYxLlJlbW92ZVJvYm90SAASQgoVc2V0X2FsbG93ZWRfY29sbGlzaW9uGAogASgLMiEuY2xlYXJhbmNlLnYxLlNldEFsbG93ZWRDb2xsaXNpb25IABI2Cg9zZXRfcGFpcl9tYXJnaW4YCyABKAsyGy5jbGVhcmFuY2UudjEuU2V0UGFpck1hcmdpbkgAEi8KC3NldF9lbmFibGVkGAwgASgLMhguY2xlYXJhbmNlLnYxLlNldEVuYWJsZWRIABIzCg1pbnNlcnRfcG9pbnRzGA0gASgLMhouY2xlYXJhbmNlLnYxLkluc2VydFBvaW50c0gAEisKCWNsZWFyX2JveBgOIAEoCzIWLmNsZWFyYW5jZS52MS5DbGVhckJveEgAEjcKD2RlY2xhcmVfZWZmZWN0cxgPIAEoCzIcLmNsZWFyYW5jZS52MS5EZWNsYXJlRWZmZWN0c0gAQgYKBGtpbmQi2AEKB0FkZEJvZHkSDAoEbmFtZRgBIAEoCRIiCgVzaGFwZRgCIAEoCzITLmNsZWFyYW5jZS52MS5TaGFwZRIgCgRwb3NlGAMgASgLMhIuY2xlYXJhbmNlLnYxLlBvc2USDgoGZ3JvdXBzGAQgAygJEhMKBmxheWVycxgFIAEoB0gAiAEBEhEKBG1hc2sYBiABKAdIAYgBARIPCgdwYWRkaW5nGAcgASgBEhIKBXNjYWxlGAggASgBSAKIAQFCCQoHX2xheWVyc0IHCgVfbWFza0IICgZfc2NhbGUiUQoITW92ZUJvZHkSIwoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiAKBHBvc2UYAiABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSJaCgxJbnNlcnRQb2ludHMSIwoEYm9keRgBIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiUKBnBvaW50cxgCIAEoCzIVLmNsZWFyYW5jZS52MS5OdW1iZXJzIlAKCENsZWFyQm94EiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZhIfCgNib3gYAiABKAsyEi5jbGVhcmFuY2UudjEuQWFiYiIxCgpSZW1vdmVCb2R5EiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZiKGAQoMUmVwbGFjZVNoYXBlEiMKBGJvZHkYASABKAsyFS5jbGVhcmFuY2UudjEuQm9keVJlZhIiCgVzaGFwZRgCIAEoCzITLmNsZWFyYW5jZS52MS5TaGFwZRIPCgdwYWRkaW5nGAMgASgBEhIKBXNjYWxlGAQgASgBSACIAQFCCAoGX3NjYWxlIkAKCVNldEdyb3VwcxIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSDgoGZ3JvdXBzGAIgAygJImwKCVNldExheWVycxIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSEwoGbGF5ZXJzGAIgASgHSACIAQESEQoEbWFzaxgDIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2siQgoKU2V0RW5hYmxlZBIjCgRib2R5GAEgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWYSDwoHZW5hYmxlZBgCIAEoCCJJCghBZGRSb2JvdBIMCgRuYW1lGAEgASgJEg0KBW1vZGVsGAIgASgJEiAKBGJhc2UYAyABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSI8CglNb3ZlUm9ib3QSDQoFcm9ib3QYASABKAkSIAoEYmFzZRgCIAEoCzISLmNsZWFyYW5jZS52MS5Qb3NlIhwKC1JlbW92ZVJvYm90Eg0KBXJvYm90GAEgASgJIncKE1NldEFsbG93ZWRDb2xsaXNpb24SHgoBYRgBIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRIeCgFiGAIgASgLMhMuY2xlYXJhbmNlLnYxLlBhcnR5EhQKB2FsbG93ZWQYAyABKAhIAIgBAUIKCghfYWxsb3dlZCJvCg1TZXRQYWlyTWFyZ2luEh4KAWEYASABKAsyEy5jbGVhcmFuY2UudjEuUGFydHkSHgoBYhgCIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRITCgZtYXJnaW4YAyABKAFIAIgBAUIJCgdfbWFyZ2luIngKDkRlY2xhcmVFZmZlY3RzEh4KAWEYASABKAsyEy5jbGVhcmFuY2UudjEuUGFydHkSHgoBYhgCIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRImCgdlZmZlY3RzGAMgASgLMhUuY2xlYXJhbmNlLnYxLkVmZmVjdHMiMAoHRWZmZWN0cxIlCgdlZmZlY3RzGAEgAygOMhQuY2xlYXJhbmNlLnYxLkVmZmVjdCJLCglQYXJ0eVBhaXISHgoBYRgBIAEoCzITLmNsZWFyYW5jZS52MS5QYXJ0eRIeCgFiGAIgASgLMhMuY2xlYXJhbmNlLnYxLlBhcnR5IjsKCENvdmVyYWdlEi8KDmRlY2xhcmVkX2VtcHR5GAEgAygLMhcuY2xlYXJhbmNlLnYxLlBhcnR5UGFpciKMAQoMU2NlbmVTdW1tYXJ5EgwKBG5hbWUYASABKAkSDQoFZXBvY2gYAiABKAQSEAoIcmV2aXNpb24YAyABKAQSDgoGYm9kaWVzGAQgASgNEg4KBnJvYm90cxgFIAEoDRItCgticm9hZF9waGFzZRgGIAEoDjIYLmNsZWFyYW5jZS52MS5Ccm9hZFBoYXNlItkBCgRCb2R5EgoKAmlkGAEgASgEEgwKBG5hbWUYAiABKAkSEgoKc2hhcGVfa2luZBgDIAEoCRIgCgRwb3NlGAQgASgLMhIuY2xlYXJhbmNlLnYxLlBvc2USDgoGZ3JvdXBzGAUgAygJEg4KBmxheWVycxgGIAEoBxIMCgRtYXNrGAcgASgHEiIKBmJvdW5kcxgIIAEoCzISLmNsZWFyYW5jZS52MS5BYWJiEg0KBXNjYWxlGAkgASgBEg8KB3BhZGRpbmcYCiABKAESDwoHZW5hYmxlZBgLIAEoCCJNCgxSb2JvdEluU2NlbmUSDAoEbmFtZRgBIAEoCRINCgVtb2RlbBgCIAEoCRIgCgRiYXNlGAMgASgLMhIuY2xlYXJhbmNlLnYxLlBvc2Ui/wEKDVNjZW5lQ29udGVudHMSDAoEbmFtZRgBIAEoCRINCgVlcG9jaBgCIAEoBBIQCghyZXZpc2lvbhgDIAEoBBIXCg9vbGRlc3RfcmV2aXNpb24YBCABKAQSIgoGYm9kaWVzGAUgAygLMhIuY2xlYXJhbmNlLnYxLkJvZHkSKgoGcm9ib3RzGAYgAygLMhouY2xlYXJhbmNlLnYxLlJvYm90SW5TY2VuZRItCgticm9hZF9waGFzZRgHIAEoDjIYLmNsZWFyYW5jZS52MS5Ccm9hZFBoYXNlEhIKCmJvZHlfY291bnQYCCABKAQSEwoLYm9kaWVzX2xlZnQYCSABKAgq0gEKBkVmZmVjdBIWChJFRkZFQ1RfVU5TUEVDSUZJRUQQABISCg5FRkZFQ1RfVkVSRElDVBABEhEKDUVGRkVDVF9NQVJHSU4QAhITCg9FRkZFQ1RfRElTVEFOQ0UQAxISCg5FRkZFQ1RfV0lUTkVTUxAEEhAKDEVGRkVDVF9ERVBUSBAFEhAKDEVGRkVDVF9QQVRDSBAGEhEKDUVGRkVDVF9NT1RJT04QBxIWChJFRkZFQ1RfREVSSVZBVElWRVMQCBIRCg1FRkZFQ1RfRVZFTlRTEAkqfAoKQnJvYWRQaGFzZRIbChdCUk9BRF9QSEFTRV9VTlNQRUNJRklFRBAAEhQKEEJST0FEX1BIQVNFX1RSRUUQARIfChtCUk9BRF9QSEFTRV9TV0VFUF9BTkRfUFJVTkUQAhIaChZCUk9BRF9QSEFTRV9FWEhBVVNUSVZFEANiBnByb3RvMw", [file_clearance_v1_geometry]);
 
 /**
  * A body of a scene, by id or by name.
@@ -243,12 +243,18 @@ export type Edit = Message<"clearance.v1.Edit"> & {
     case: "insertPoints";
   } | {
     /**
-     * 15 to 39 are kept for attached bodies, declared effects and joint positions.
-     *
      * @generated from field: clearance.v1.ClearBox clear_box = 14;
      */
     value: ClearBox;
     case: "clearBox";
+  } | {
+    /**
+     * 16 to 39 are kept for attached bodies and joint positions.
+     *
+     * @generated from field: clearance.v1.DeclareEffects declare_effects = 15;
+     */
+    value: DeclareEffects;
+    case: "declareEffects";
   } | { case: undefined; value?: undefined };
 };
 
@@ -723,6 +729,115 @@ export const SetPairMarginSchema: GenMessage<SetPairMargin> = /*@__PURE__*/
   messageDesc(file_clearance_v1_scene, 18);
 
 /**
+ * What may be asked of a pair. It replaces an earlier declaration of the same two parties; of those that speak of a pair the most
+ * specific decide, as in the allowed-collision matrix, and equals add up. A pair that none speaks of permits everything.
+ * FAILED_PRECONDITION where the two parties have a margin above zero entered and are to be without EFFECT_MARGIN.
+ *
+ * @generated from message clearance.v1.DeclareEffects
+ */
+export type DeclareEffects = Message<"clearance.v1.DeclareEffects"> & {
+  /**
+   * must be said
+   *
+   * @generated from field: clearance.v1.Party a = 1;
+   */
+  a?: Party | undefined;
+
+  /**
+   * must be said
+   *
+   * @generated from field: clearance.v1.Party b = 2;
+   */
+  b?: Party | undefined;
+
+  /**
+   * Of none the pair is not looked at by any question, and answers list it in their coverage; absent: the declaration is
+   * taken back
+   *
+   * @generated from field: clearance.v1.Effects effects = 3;
+   */
+  effects?: Effects | undefined;
+};
+
+/**
+ * Describes the message clearance.v1.DeclareEffects.
+ * Use `create(DeclareEffectsSchema)` to create a new message.
+ */
+export const DeclareEffectsSchema: GenMessage<DeclareEffects> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_scene, 19);
+
+/**
+ * A set of effects; with each what it needs.
+ *
+ * @generated from message clearance.v1.Effects
+ */
+export type Effects = Message<"clearance.v1.Effects"> & {
+  /**
+   * in any order; none: nothing may be asked
+   *
+   * @generated from field: repeated clearance.v1.Effect effects = 1;
+   */
+  effects: Effect[];
+};
+
+/**
+ * Describes the message clearance.v1.Effects.
+ * Use `create(EffectsSchema)` to create a new message.
+ */
+export const EffectsSchema: GenMessage<Effects> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_scene, 20);
+
+/**
+ * Two sides of an entry for pairs.
+ *
+ * @generated from message clearance.v1.PartyPair
+ */
+export type PartyPair = Message<"clearance.v1.PartyPair"> & {
+  /**
+   * the one side; a body by its id
+   *
+   * @generated from field: clearance.v1.Party a = 1;
+   */
+  a?: Party | undefined;
+
+  /**
+   * the other side
+   *
+   * @generated from field: clearance.v1.Party b = 2;
+   */
+  b?: Party | undefined;
+};
+
+/**
+ * Describes the message clearance.v1.PartyPair.
+ * Use `create(PartyPairSchema)` to create a new message.
+ */
+export const PartyPairSchema: GenMessage<PartyPair> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_scene, 21);
+
+/**
+ * What an answer says nothing about.
+ *
+ * @generated from message clearance.v1.Coverage
+ */
+export type Coverage = Message<"clearance.v1.Coverage"> & {
+  /**
+   * Whose pairs are declared empty, and that the question could have been about; in order. They were not looked at: FREE says
+   * nothing of them. Bodies that the question's filter left out may be among them
+   *
+   * @generated from field: repeated clearance.v1.PartyPair declared_empty = 1;
+   */
+  declaredEmpty: PartyPair[];
+};
+
+/**
+ * Describes the message clearance.v1.Coverage.
+ * Use `create(CoverageSchema)` to create a new message.
+ */
+export const CoverageSchema: GenMessage<Coverage> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_scene, 22);
+
+/**
  * One scene, in short.
  *
  * @generated from message clearance.v1.SceneSummary
@@ -776,7 +891,7 @@ export type SceneSummary = Message<"clearance.v1.SceneSummary"> & {
  * Use `create(SceneSummarySchema)` to create a new message.
  */
 export const SceneSummarySchema: GenMessage<SceneSummary> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_scene, 19);
+  messageDesc(file_clearance_v1_scene, 23);
 
 /**
  * A body as it stands in one revision.
@@ -867,7 +982,7 @@ export type Body = Message<"clearance.v1.Body"> & {
  * Use `create(BodySchema)` to create a new message.
  */
 export const BodySchema: GenMessage<Body> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_scene, 20);
+  messageDesc(file_clearance_v1_scene, 24);
 
 /**
  * A robot as it stands in one revision.
@@ -902,7 +1017,7 @@ export type RobotInScene = Message<"clearance.v1.RobotInScene"> & {
  * Use `create(RobotInSceneSchema)` to create a new message.
  */
 export const RobotInSceneSchema: GenMessage<RobotInScene> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_scene, 21);
+  messageDesc(file_clearance_v1_scene, 25);
 
 /**
  * A scene in one revision.
@@ -979,7 +1094,90 @@ export type SceneContents = Message<"clearance.v1.SceneContents"> & {
  * Use `create(SceneContentsSchema)` to create a new message.
  */
 export const SceneContentsSchema: GenMessage<SceneContents> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_scene, 22);
+  messageDesc(file_clearance_v1_scene, 26);
+
+/**
+ * Something that a question can want of a pair.
+ *
+ * @generated from enum clearance.v1.Effect
+ */
+export enum Effect {
+  /**
+   * refused
+   *
+   * @generated from enum value: EFFECT_UNSPECIFIED = 0;
+   */
+  UNSPECIFIED = 0,
+
+  /**
+   * whether it touches
+   *
+   * @generated from enum value: EFFECT_VERDICT = 1;
+   */
+  VERDICT = 1,
+
+  /**
+   * whether it is nearer than a margin above zero; with VERDICT
+   *
+   * @generated from enum value: EFFECT_MARGIN = 2;
+   */
+  MARGIN = 2,
+
+  /**
+   * the bracket of its signed distance; with VERDICT
+   *
+   * @generated from enum value: EFFECT_DISTANCE = 3;
+   */
+  DISTANCE = 3,
+
+  /**
+   * points and normal; with DISTANCE
+   *
+   * @generated from enum value: EFFECT_WITNESS = 4;
+   */
+  WITNESS = 4,
+
+  /**
+   * a tight bracket in an overlap, too; with DISTANCE
+   *
+   * @generated from enum value: EFFECT_DEPTH = 5;
+   */
+  DEPTH = 5,
+
+  /**
+   * where its faces touch; with WITNESS and DEPTH
+   *
+   * @generated from enum value: EFFECT_PATCH = 6;
+   */
+  PATCH = 6,
+
+  /**
+   * what it does along a motion; with VERDICT
+   *
+   * @generated from enum value: EFFECT_MOTION = 7;
+   */
+  MOTION = 7,
+
+  /**
+   * how its distance changes with its poses; with WITNESS
+   *
+   * @generated from enum value: EFFECT_DERIVATIVES = 8;
+   */
+  DERIVATIVES = 8,
+
+  /**
+   * when its contact begins and ends; with VERDICT
+   *
+   * @generated from enum value: EFFECT_EVENTS = 9;
+   */
+  EVENTS = 9,
+}
+
+/**
+ * Describes the enum clearance.v1.Effect.
+ */
+export const EffectSchema: GenEnum<Effect> = /*@__PURE__*/
+  enumDesc(file_clearance_v1_scene, 0);
 
 /**
  * How the bodies of a scene that meet, or are near, are found. Chosen when the scene is made; no answer depends on it,
@@ -1021,5 +1219,5 @@ export enum BroadPhase {
  * Describes the enum clearance.v1.BroadPhase.
  */
 export const BroadPhaseSchema: GenEnum<BroadPhase> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_scene, 0);
+  enumDesc(file_clearance_v1_scene, 1);
 

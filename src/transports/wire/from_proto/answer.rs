@@ -1,8 +1,10 @@
 //! Answers, as a client reads them.
 
+use super::Path;
+use super::scene::party;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
-use crate::query::{Answer, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
+use crate::query::{Answer, Coverage, Indeterminacy, ItemAnswer, PairAnswer, Side, Verdict, Witness};
 use crate::scene::{BodyId, Epoch, Revision};
 use crate::transports::wire::v1;
 
@@ -28,8 +30,17 @@ pub fn answer(message: &v1::Answer) -> Result<Answer, NotAnAnswer> {
         items: message.items.iter().map(item).collect::<Result<_, _>>()?,
         stopped_at: message.stopped_at.map(|index| index as usize),
         out_of_time: message.out_of_time,
+        coverage: coverage(message.coverage.as_ref())?,
         cost: cost(message.cost)?,
     })
+}
+
+pub(super) fn coverage(message: Option<&v1::Coverage>) -> Result<Coverage, NotAnAnswer> {
+    let unknown = |_| NotAnAnswer("coverage");
+    let party = |side: Option<&v1::Party>| party(&Path::root("coverage"), side).map_err(unknown);
+    let pair = |pair: &v1::PartyPair| Ok((party(pair.a.as_ref())?, party(pair.b.as_ref())?));
+    let declared_empty = message.into_iter().flat_map(|message| &message.declared_empty).map(pair);
+    Ok(Coverage { declared_empty: declared_empty.collect::<Result<_, NotAnAnswer>>()? })
 }
 
 fn item(item: &v1::ItemAnswer) -> Result<ItemAnswer, NotAnAnswer> {

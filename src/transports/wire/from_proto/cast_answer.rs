@@ -1,9 +1,11 @@
 //! Answers about rays, motions, regions and neighbours, as a client reads them.
 
-use super::answer::{NotAnAnswer, cost, indeterminacy, pair, verdict};
+use super::answer::{NotAnAnswer, cost, coverage, indeterminacy, pair, verdict};
 use crate::geometry::Vec3;
 use crate::narrow_phase::Cost;
-use crate::query::{Answers, CastHit, CastItem, CastVerdict, Grazed, NearestItem, OverlapItem, Overlapping, Verdict};
+use crate::query::{
+    Answers, CastHit, CastItem, CastVerdict, Coverage, Grazed, NearestItem, OverlapItem, Overlapping, Verdict,
+};
 use crate::scene::{BodyId, Epoch, Revision};
 use crate::transports::wire::v1;
 
@@ -13,7 +15,8 @@ use crate::transports::wire::v1;
 /// [`NotAnAnswer`].
 pub fn cast_shapes_answers(message: &v1::CastShapesResponse) -> Result<Answers<CastItem>, NotAnAnswer> {
     let items = message.items.iter().map(cast_item).collect::<Result<_, _>>()?;
-    Ok(answers((message.epoch, message.revision, message.out_of_time), items, is_cast))
+    let coverage = coverage(message.coverage.as_ref())?;
+    Ok(Answers { coverage, ..answers((message.epoch, message.revision, message.out_of_time), items, is_cast) })
 }
 
 /// Answers to moving pairs.
@@ -22,7 +25,8 @@ pub fn cast_shapes_answers(message: &v1::CastShapesResponse) -> Result<Answers<C
 /// [`NotAnAnswer`].
 pub fn check_moving_pairs_answers(message: &v1::CheckMovingPairsResponse) -> Result<Answers<CastItem>, NotAnAnswer> {
     let items = message.items.iter().map(cast_item).collect::<Result<_, _>>()?;
-    Ok(answers((message.epoch, message.revision, message.out_of_time), items, is_cast))
+    let coverage = coverage(message.coverage.as_ref())?;
+    Ok(Answers { coverage, ..answers((message.epoch, message.revision, message.out_of_time), items, is_cast) })
 }
 
 /// Answers to regions.
@@ -52,7 +56,8 @@ pub fn nearest_bodies_answers(message: &v1::NearestBodiesResponse) -> Result<Ans
     };
     let items = message.items.iter().map(item).collect::<Result<_, _>>()?;
     let is_done = |item: &NearestItem| item.verdict != Verdict::NotRun;
-    Ok(answers((message.epoch, message.revision, message.out_of_time), items, is_done))
+    let coverage = coverage(message.coverage.as_ref())?;
+    Ok(Answers { coverage, ..answers((message.epoch, message.revision, message.out_of_time), items, is_done) })
 }
 
 /// Answers to rays. The cost is told as a sum over all rays, which stands with the first.
@@ -98,7 +103,14 @@ fn answers<T>(
 ) -> Answers<T> {
     // Without a limit of time every item was looked at, whatever its verdict.
     let answered = if out_of_time { items.iter().filter(|item| is_done(item)).count() } else { items.len() };
-    Answers { epoch: Epoch(epoch), revision: Revision(revision), items, out_of_time, answered }
+    Answers {
+        epoch: Epoch(epoch),
+        revision: Revision(revision),
+        items,
+        out_of_time,
+        answered,
+        coverage: Coverage::default(),
+    }
 }
 
 fn is_cast(item: &CastItem) -> bool {

@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use prost::Message;
 
+use super::query::unknown_value;
 use super::{Path, fields, geometry};
 use crate::geometry::Aabb;
 use crate::limits::{LimitExceeded, Limits};
-use crate::scene::{BodyId, BodyRef, BroadPhaseKind, Edit, Epoch, NewBody, Party, Revision, SceneOptions};
+use crate::scene::{
+    BodyId, BodyRef, BroadPhaseKind, Edit, Effect, Effects, Epoch, NewBody, Party, Revision, SceneOptions,
+};
 use crate::service::{Change, ContentHash, IdempotencyKey, Library, Robots, ServiceError};
 use crate::transports::wire::v1;
 
@@ -141,6 +144,15 @@ pub(super) fn edit(path: &Path<'_>, edit: &v1::Edit, library: &Library, robots: 
                 margin: edit.margin,
             })
         }
+        Kind::DeclareEffects(edit) => {
+            let path = path.field("declare_effects");
+            let declared = edit.effects.as_ref().map(|declared| effects(&path.field("effects"), declared));
+            Ok(Edit::DeclareEffects {
+                a: party(&path.field("a"), edit.a.as_ref())?,
+                b: party(&path.field("b"), edit.b.as_ref())?,
+                effects: declared.transpose()?,
+            })
+        }
         Kind::AddRobot(edit) => {
             let path = path.field("add_robot");
             Ok(Edit::AddRobot {
@@ -184,7 +196,23 @@ pub(super) fn body_ref(path: &Path<'_>, body: Option<&v1::BodyRef>) -> Result<Bo
     }
 }
 
-fn party(path: &Path<'_>, party: Option<&v1::Party>) -> Result<Party, ServiceError> {
+fn effects(path: &Path<'_>, effects: &v1::Effects) -> Result<Effects, ServiceError> {
+    let effect = |(index, number): (usize, &i32)| match v1::Effect::try_from(*number) {
+        Ok(v1::Effect::Verdict) => Ok(Effect::Verdict),
+        Ok(v1::Effect::Margin) => Ok(Effect::Margin),
+        Ok(v1::Effect::Distance) => Ok(Effect::Distance),
+        Ok(v1::Effect::Witness) => Ok(Effect::Witness),
+        Ok(v1::Effect::Depth) => Ok(Effect::Depth),
+        Ok(v1::Effect::Patch) => Ok(Effect::Patch),
+        Ok(v1::Effect::Motion) => Ok(Effect::Motion),
+        Ok(v1::Effect::Derivatives) => Ok(Effect::Derivatives),
+        Ok(v1::Effect::Events) => Ok(Effect::Events),
+        Ok(v1::Effect::Unspecified) | Err(_) => Err(unknown_value(&path.item("effects", index), *number)),
+    };
+    effects.effects.iter().enumerate().map(effect).collect()
+}
+
+pub(super) fn party(path: &Path<'_>, party: Option<&v1::Party>) -> Result<Party, ServiceError> {
     use v1::party::Kind;
     match path.required(party.and_then(|party| party.kind.as_ref()))? {
         Kind::Body(body) => Ok(Party::Body(body_ref(&path.field("body"), Some(body))?)),

@@ -1,5 +1,6 @@
 //! Answers to questions.
 
+use super::declared::coverage;
 use super::geometry::vec3;
 use super::{count, little_endian};
 use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
@@ -28,6 +29,7 @@ fn frame(answer: &Answer) -> v1::Answer {
         out_of_time: answer.out_of_time,
         cost: Some(cost(answer.cost)),
         added_bodies: Vec::new(),
+        coverage: coverage(&answer.coverage),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::answer::{cost, indeterminacy, pair, verdict};
 use super::count;
+use super::declared::coverage;
 use super::geometry::vec3;
 use crate::geometry::Vec3;
 use crate::narrow_phase::Cost;
@@ -76,6 +77,7 @@ pub fn cast_shapes_response(answers: &Answers<CastItem>) -> v1::CastShapesRespon
         revision: answers.revision.0,
         out_of_time: answers.out_of_time,
         items: answers.items.iter().map(cast_item).collect(),
+        coverage: coverage(&answers.coverage),
     }
 }
 
@@ -87,6 +89,7 @@ pub fn check_moving_pairs_response(answers: &Answers<CastItem>) -> v1::CheckMovi
         revision: answers.revision.0,
         out_of_time: answers.out_of_time,
         items: answers.items.iter().map(cast_item).collect(),
+        coverage: coverage(&answers.coverage),
     }
 }
 
@@ -133,6 +136,7 @@ pub fn nearest_bodies_response(answers: &Answers<NearestItem>) -> v1::NearestBod
         revision: answers.revision.0,
         out_of_time: answers.out_of_time,
         items: answers.items.iter().map(item).collect(),
+        coverage: coverage(&answers.coverage),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Contacts, as they change.
 
 use super::answer::{cost, pair};
+use super::declared::coverage;
 use crate::query::{ContactChanges, ContactEvent, ContactEventKind, ContactState, EndReason};
 use crate::transports::wire::v1;
 
@@ -19,6 +20,7 @@ pub fn contact_messages(changes: &ContactChanges) -> Vec<v1::WatchContactsRespon
         contacts: changes.contacts as u64,
         undecided: changes.undecided as u64,
         cost: Some(cost(changes.cost)),
+        coverage: coverage(&changes.coverage),
     };
     let mut messages: Vec<v1::WatchContactsResponse> = changes.events.chunks(EVENTS).map(message).collect();
     if messages.is_empty() {

@@ -67,6 +67,7 @@ fn code_and_reason(error: &ServiceError) -> (u8, ErrorReason) {
         ServiceError::NotFound { .. } => (code::NOT_FOUND, ErrorReason::NotFound),
         ServiceError::AlreadyExists { .. } => (code::ALREADY_EXISTS, ErrorReason::AlreadyExists),
         ServiceError::EditRefused { .. } => (code::FAILED_PRECONDITION, ErrorReason::EditRefused),
+        ServiceError::EffectNotDeclared { .. } => (code::FAILED_PRECONDITION, ErrorReason::EffectNotDeclared),
         ServiceError::EffectNotBuilt { .. } => (code::FAILED_PRECONDITION, ErrorReason::EffectNotBuilt),
         ServiceError::KeyReused { .. } => (code::INVALID_ARGUMENT, ErrorReason::KeyReused),
         ServiceError::WrongEpoch { .. } => (code::FAILED_PRECONDITION, ErrorReason::WrongEpoch),
@@ -86,6 +87,11 @@ fn details(error: &ServiceError) -> Vec<(&'static str, String)> {
         ServiceError::Invalid { field, .. } | ServiceError::EditRefused { field, .. } => {
             vec![("clearance-field", field.clone())]
         }
+        ServiceError::EffectNotDeclared { effect, a, b } => vec![
+            ("clearance-effect", effect.to_string()),
+            ("clearance-a", a.to_string()),
+            ("clearance-b", b.to_string()),
+        ],
         ServiceError::EffectNotBuilt { field, effect } => {
             vec![("clearance-field", (*field).to_owned()), ("clearance-effect", (*effect).to_owned())]
         }

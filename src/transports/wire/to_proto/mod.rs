@@ -4,6 +4,7 @@ mod answer;
 mod cast;
 mod cast_question;
 mod contact;
+mod declared;
 mod error;
 mod geometry;
 mod health;

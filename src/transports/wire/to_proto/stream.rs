@@ -2,9 +2,10 @@
 
 use prost::Message;
 
+use super::declared::{effects, party};
 use super::geometry::{aabb, pose, shape};
-use super::scene::{body, body_ref, robot_in_scene};
-use crate::scene::{Body, BodyId, ChangeKinds, PairEntry, Party};
+use super::scene::{body, robot_in_scene};
+use crate::scene::{Body, BodyId, ChangeKinds, PairEntry};
 use crate::service::{PosesMade, Robots, SceneStep};
 use crate::transports::wire::v1;
 
@@ -117,20 +118,9 @@ fn tell(message: &mut v1::WatchResponse, found: &Body, kinds: ChangeKinds, shape
 }
 
 fn pair_entry(entry: &PairEntry) -> v1::PairEntry {
-    let PairEntry { a, b, allowed, margin } = entry;
-    v1::PairEntry { a: Some(party(a)), b: Some(party(b)), allowed: *allowed, margin: *margin }
-}
-
-fn party(party: &Party) -> v1::Party {
-    use v1::party::Kind;
-    let kind = match party {
-        Party::Body(body) => Kind::Body(body_ref(body)),
-        Party::Link { robot, link } => Kind::Link(v1::LinkRef { robot: robot.clone(), link: link.clone() }),
-        Party::Group(group) => Kind::Group(group.clone()),
-        Party::Robot(robot) => Kind::Robot(robot.clone()),
-        Party::Everything => Kind::Everything(v1::Everything {}),
-    };
-    v1::Party { kind: Some(kind) }
+    let PairEntry { a, b, allowed, margin, effects: declared } = entry;
+    let effects = declared.map(effects);
+    v1::PairEntry { a: Some(party(a)), b: Some(party(b)), allowed: *allowed, margin: *margin, effects }
 }
 
 /// What became of the poses of a stream.

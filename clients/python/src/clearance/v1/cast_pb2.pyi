@@ -221,28 +221,32 @@ class CastItem(_message.Message):
     def __init__(self, verdict: _Optional[_Union[CastVerdict, str]] = ..., indeterminacy: _Optional[_Union[_query_pb2.Indeterminacy, str]] = ..., free_until: _Optional[float] = ..., hits: _Optional[_Iterable[_Union[CastHit, _Mapping]]] = ..., grazed: _Optional[_Iterable[_Union[Grazed, _Mapping]]] = ..., truncated: bool = ..., problem: _Optional[str] = ..., cost: _Optional[_Union[_query_pb2.Cost, _Mapping]] = ...) -> None: ...
 
 class CastShapesResponse(_message.Message):
-    __slots__ = ("epoch", "revision", "out_of_time", "items")
+    __slots__ = ("epoch", "revision", "out_of_time", "items", "coverage")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     OUT_OF_TIME_FIELD_NUMBER: _ClassVar[int]
     ITEMS_FIELD_NUMBER: _ClassVar[int]
+    COVERAGE_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     out_of_time: bool
     items: _containers.RepeatedCompositeFieldContainer[CastItem]
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[CastItem, _Mapping]]] = ...) -> None: ...
+    coverage: _scene_pb2.Coverage
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[CastItem, _Mapping]]] = ..., coverage: _Optional[_Union[_scene_pb2.Coverage, _Mapping]] = ...) -> None: ...
 
 class CheckMovingPairsResponse(_message.Message):
-    __slots__ = ("epoch", "revision", "out_of_time", "items")
+    __slots__ = ("epoch", "revision", "out_of_time", "items", "coverage")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     OUT_OF_TIME_FIELD_NUMBER: _ClassVar[int]
     ITEMS_FIELD_NUMBER: _ClassVar[int]
+    COVERAGE_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     out_of_time: bool
     items: _containers.RepeatedCompositeFieldContainer[CastItem]
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[CastItem, _Mapping]]] = ...) -> None: ...
+    coverage: _scene_pb2.Coverage
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[CastItem, _Mapping]]] = ..., coverage: _Optional[_Union[_scene_pb2.Coverage, _Mapping]] = ...) -> None: ...
 
 class Region(_message.Message):
     __slots__ = ("box", "ball", "shape")
@@ -331,13 +335,15 @@ class NearestItem(_message.Message):
     def __init__(self, verdict: _Optional[_Union[_query_pb2.Verdict, str]] = ..., indeterminacy: _Optional[_Union[_query_pb2.Indeterminacy, str]] = ..., nearest: _Optional[_Iterable[_Union[_query_pb2.PairAnswer, _Mapping]]] = ..., set_is_proved: bool = ..., order_is_proved: bool = ..., problem: _Optional[str] = ..., cost: _Optional[_Union[_query_pb2.Cost, _Mapping]] = ...) -> None: ...
 
 class NearestBodiesResponse(_message.Message):
-    __slots__ = ("epoch", "revision", "out_of_time", "items")
+    __slots__ = ("epoch", "revision", "out_of_time", "items", "coverage")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     OUT_OF_TIME_FIELD_NUMBER: _ClassVar[int]
     ITEMS_FIELD_NUMBER: _ClassVar[int]
+    COVERAGE_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     out_of_time: bool
     items: _containers.RepeatedCompositeFieldContainer[NearestItem]
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[NearestItem, _Mapping]]] = ...) -> None: ...
+    coverage: _scene_pb2.Coverage
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., out_of_time: bool = ..., items: _Optional[_Iterable[_Union[NearestItem, _Mapping]]] = ..., coverage: _Optional[_Union[_scene_pb2.Coverage, _Mapping]] = ...) -> None: ...

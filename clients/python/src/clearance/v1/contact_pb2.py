@@ -23,27 +23,28 @@ _sym_db = _symbol_database.Default()
 
 
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
+from clearance.v1 import scene_pb2 as clearance_dot_v1_dot_scene__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/contact.proto\x12\x0c\x63learance.v1\x1a\x18\x63learance/v1/query.proto\"\x80\x01\n\x14WatchContactsRequest\x12&\n\x07\x63ontext\x18\x01 \x01(\x0b\x32\x15.clearance.v1.Context\x12\x31\n\tthreshold\x18\x02 \x01(\x0e\x32\x1e.clearance.v1.ContactThreshold\x12\r\n\x05stays\x18\x03 \x01(\x08\"\xe7\x01\n\x15WatchContactsResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x1a\n\rfrom_revision\x18\x02 \x01(\x04H\x00\x88\x01\x01\x12\x10\n\x08revision\x18\x03 \x01(\x04\x12*\n\x06\x65vents\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.ContactEvent\x12\x0c\n\x04more\x18\x05 \x01(\x08\x12\x10\n\x08\x63ontacts\x18\x06 \x01(\x04\x12\x11\n\tundecided\x18\x07 \x01(\x04\x12 \n\x04\x63ost\x18\x08 \x01(\x0b\x32\x12.clearance.v1.CostB\x10\n\x0e_from_revision\"\x81\x02\n\x0c\x43ontactEvent\x12\t\n\x01\x61\x18\x01 \x01(\x04\x12\t\n\x01\x62\x18\x02 \x01(\x04\x12,\n\x04kind\x18\x03 \x01(\x0e\x32\x1e.clearance.v1.ContactEventKind\x12*\n\x06\x62\x65\x66ore\x18\x04 \x01(\x0e\x32\x1a.clearance.v1.ContactState\x12)\n\x05\x61\x66ter\x18\x05 \x01(\x0e\x32\x1a.clearance.v1.ContactState\x12.\n\x06reason\x18\x06 \x01(\x0e\x32\x1e.clearance.v1.ContactEndReason\x12&\n\x04pair\x18\x07 \x01(\x0b\x32\x18.clearance.v1.PairAnswer*s\n\x10\x43ontactThreshold\x12!\n\x1d\x43ONTACT_THRESHOLD_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x43ONTACT_THRESHOLD_TOUCHING\x10\x01\x12\x1c\n\x18\x43ONTACT_THRESHOLD_MARGIN\x10\x02*\xaf\x01\n\x10\x43ontactEventKind\x12\"\n\x1e\x43ONTACT_EVENT_KIND_UNSPECIFIED\x10\x00\x12\x1c\n\x18\x43ONTACT_EVENT_KIND_BEGIN\x10\x01\x12\x1b\n\x17\x43ONTACT_EVENT_KIND_STAY\x10\x02\x12\x1a\n\x16\x43ONTACT_EVENT_KIND_END\x10\x03\x12 \n\x1c\x43ONTACT_EVENT_KIND_UNDECIDED\x10\x04*~\n\x0c\x43ontactState\x12\x1d\n\x19\x43ONTACT_STATE_UNSPECIFIED\x10\x00\x12\x17\n\x13\x43ONTACT_STATE_APART\x10\x01\x12\x1b\n\x17\x43ONTACT_STATE_UNDECIDED\x10\x02\x12\x19\n\x15\x43ONTACT_STATE_CONTACT\x10\x03*\xb8\x01\n\x10\x43ontactEndReason\x12\"\n\x1e\x43ONTACT_END_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x43ONTACT_END_REASON_REMOVED\x10\x01\x12\x1f\n\x1b\x43ONTACT_END_REASON_DISABLED\x10\x02\x12!\n\x1d\x43ONTACT_END_REASON_NOT_A_PAIR\x10\x03\x12\x1c\n\x18\x43ONTACT_END_REASON_APART\x10\x04\x62\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/contact.proto\x12\x0c\x63learance.v1\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/scene.proto\"\x80\x01\n\x14WatchContactsRequest\x12&\n\x07\x63ontext\x18\x01 \x01(\x0b\x32\x15.clearance.v1.Context\x12\x31\n\tthreshold\x18\x02 \x01(\x0e\x32\x1e.clearance.v1.ContactThreshold\x12\r\n\x05stays\x18\x03 \x01(\x08\"\x91\x02\n\x15WatchContactsResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x1a\n\rfrom_revision\x18\x02 \x01(\x04H\x00\x88\x01\x01\x12\x10\n\x08revision\x18\x03 \x01(\x04\x12*\n\x06\x65vents\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.ContactEvent\x12\x0c\n\x04more\x18\x05 \x01(\x08\x12\x10\n\x08\x63ontacts\x18\x06 \x01(\x04\x12\x11\n\tundecided\x18\x07 \x01(\x04\x12 \n\x04\x63ost\x18\x08 \x01(\x0b\x32\x12.clearance.v1.Cost\x12(\n\x08\x63overage\x18\t \x01(\x0b\x32\x16.clearance.v1.CoverageB\x10\n\x0e_from_revision\"\x81\x02\n\x0c\x43ontactEvent\x12\t\n\x01\x61\x18\x01 \x01(\x04\x12\t\n\x01\x62\x18\x02 \x01(\x04\x12,\n\x04kind\x18\x03 \x01(\x0e\x32\x1e.clearance.v1.ContactEventKind\x12*\n\x06\x62\x65\x66ore\x18\x04 \x01(\x0e\x32\x1a.clearance.v1.ContactState\x12)\n\x05\x61\x66ter\x18\x05 \x01(\x0e\x32\x1a.clearance.v1.ContactState\x12.\n\x06reason\x18\x06 \x01(\x0e\x32\x1e.clearance.v1.ContactEndReason\x12&\n\x04pair\x18\x07 \x01(\x0b\x32\x18.clearance.v1.PairAnswer*s\n\x10\x43ontactThreshold\x12!\n\x1d\x43ONTACT_THRESHOLD_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x43ONTACT_THRESHOLD_TOUCHING\x10\x01\x12\x1c\n\x18\x43ONTACT_THRESHOLD_MARGIN\x10\x02*\xaf\x01\n\x10\x43ontactEventKind\x12\"\n\x1e\x43ONTACT_EVENT_KIND_UNSPECIFIED\x10\x00\x12\x1c\n\x18\x43ONTACT_EVENT_KIND_BEGIN\x10\x01\x12\x1b\n\x17\x43ONTACT_EVENT_KIND_STAY\x10\x02\x12\x1a\n\x16\x43ONTACT_EVENT_KIND_END\x10\x03\x12 \n\x1c\x43ONTACT_EVENT_KIND_UNDECIDED\x10\x04*~\n\x0c\x43ontactState\x12\x1d\n\x19\x43ONTACT_STATE_UNSPECIFIED\x10\x00\x12\x17\n\x13\x43ONTACT_STATE_APART\x10\x01\x12\x1b\n\x17\x43ONTACT_STATE_UNDECIDED\x10\x02\x12\x19\n\x15\x43ONTACT_STATE_CONTACT\x10\x03*\xb8\x01\n\x10\x43ontactEndReason\x12\"\n\x1e\x43ONTACT_END_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x43ONTACT_END_REASON_REMOVED\x10\x01\x12\x1f\n\x1b\x43ONTACT_END_REASON_DISABLED\x10\x02\x12!\n\x1d\x43ONTACT_END_REASON_NOT_A_PAIR\x10\x03\x12\x1c\n\x18\x43ONTACT_END_REASON_APART\x10\x04\x62\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
 _builder.BuildTopDescriptorsAndMessages(DESCRIPTOR, 'clearance.v1.contact_pb2', _globals)
 if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
-  _globals['_CONTACTTHRESHOLD']._serialized_start=695
-  _globals['_CONTACTTHRESHOLD']._serialized_end=810
-  _globals['_CONTACTEVENTKIND']._serialized_start=813
-  _globals['_CONTACTEVENTKIND']._serialized_end=988
-  _globals['_CONTACTSTATE']._serialized_start=990
-  _globals['_CONTACTSTATE']._serialized_end=1116
-  _globals['_CONTACTENDREASON']._serialized_start=1119
-  _globals['_CONTACTENDREASON']._serialized_end=1303
-  _globals['_WATCHCONTACTSREQUEST']._serialized_start=71
-  _globals['_WATCHCONTACTSREQUEST']._serialized_end=199
-  _globals['_WATCHCONTACTSRESPONSE']._serialized_start=202
-  _globals['_WATCHCONTACTSRESPONSE']._serialized_end=433
-  _globals['_CONTACTEVENT']._serialized_start=436
-  _globals['_CONTACTEVENT']._serialized_end=693
+  _globals['_CONTACTTHRESHOLD']._serialized_start=763
+  _globals['_CONTACTTHRESHOLD']._serialized_end=878
+  _globals['_CONTACTEVENTKIND']._serialized_start=881
+  _globals['_CONTACTEVENTKIND']._serialized_end=1056
+  _globals['_CONTACTSTATE']._serialized_start=1058
+  _globals['_CONTACTSTATE']._serialized_end=1184
+  _globals['_CONTACTENDREASON']._serialized_start=1187
+  _globals['_CONTACTENDREASON']._serialized_end=1371
+  _globals['_WATCHCONTACTSREQUEST']._serialized_start=97
+  _globals['_WATCHCONTACTSREQUEST']._serialized_end=225
+  _globals['_WATCHCONTACTSRESPONSE']._serialized_start=228
+  _globals['_WATCHCONTACTSRESPONSE']._serialized_end=501
+  _globals['_CONTACTEVENT']._serialized_start=504
+  _globals['_CONTACTEVENT']._serialized_end=761
 # @@protoc_insertion_point(module_scope)

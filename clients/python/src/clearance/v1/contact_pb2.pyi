@@ -1,4 +1,5 @@
 from clearance.v1 import query_pb2 as _query_pb2
+from clearance.v1 import scene_pb2 as _scene_pb2
 from google.protobuf.internal import containers as _containers
 from google.protobuf.internal import enum_type_wrapper as _enum_type_wrapper
 from google.protobuf import descriptor as _descriptor
@@ -65,7 +66,7 @@ class WatchContactsRequest(_message.Message):
     def __init__(self, context: _Optional[_Union[_query_pb2.Context, _Mapping]] = ..., threshold: _Optional[_Union[ContactThreshold, str]] = ..., stays: bool = ...) -> None: ...
 
 class WatchContactsResponse(_message.Message):
-    __slots__ = ("epoch", "from_revision", "revision", "events", "more", "contacts", "undecided", "cost")
+    __slots__ = ("epoch", "from_revision", "revision", "events", "more", "contacts", "undecided", "cost", "coverage")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     FROM_REVISION_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
@@ -74,6 +75,7 @@ class WatchContactsResponse(_message.Message):
     CONTACTS_FIELD_NUMBER: _ClassVar[int]
     UNDECIDED_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
+    COVERAGE_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     from_revision: int
     revision: int
@@ -82,7 +84,8 @@ class WatchContactsResponse(_message.Message):
     contacts: int
     undecided: int
     cost: _query_pb2.Cost
-    def __init__(self, epoch: _Optional[int] = ..., from_revision: _Optional[int] = ..., revision: _Optional[int] = ..., events: _Optional[_Iterable[_Union[ContactEvent, _Mapping]]] = ..., more: bool = ..., contacts: _Optional[int] = ..., undecided: _Optional[int] = ..., cost: _Optional[_Union[_query_pb2.Cost, _Mapping]] = ...) -> None: ...
+    coverage: _scene_pb2.Coverage
+    def __init__(self, epoch: _Optional[int] = ..., from_revision: _Optional[int] = ..., revision: _Optional[int] = ..., events: _Optional[_Iterable[_Union[ContactEvent, _Mapping]]] = ..., more: bool = ..., contacts: _Optional[int] = ..., undecided: _Optional[int] = ..., cost: _Optional[_Union[_query_pb2.Cost, _Mapping]] = ..., coverage: _Optional[_Union[_scene_pb2.Coverage, _Mapping]] = ...) -> None: ...
 
 class ContactEvent(_message.Message):
     __slots__ = ("a", "b", "kind", "before", "after", "reason", "pair")

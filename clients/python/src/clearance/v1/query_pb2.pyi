@@ -425,7 +425,7 @@ class BulkProblem(_message.Message):
     def __init__(self, item: _Optional[int] = ..., problem: _Optional[str] = ...) -> None: ...
 
 class Answer(_message.Message):
-    __slots__ = ("epoch", "revision", "items", "bulk", "stopped_at", "out_of_time", "cost", "added_bodies")
+    __slots__ = ("epoch", "revision", "items", "bulk", "stopped_at", "out_of_time", "cost", "added_bodies", "coverage")
     EPOCH_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     ITEMS_FIELD_NUMBER: _ClassVar[int]
@@ -434,6 +434,7 @@ class Answer(_message.Message):
     OUT_OF_TIME_FIELD_NUMBER: _ClassVar[int]
     COST_FIELD_NUMBER: _ClassVar[int]
     ADDED_BODIES_FIELD_NUMBER: _ClassVar[int]
+    COVERAGE_FIELD_NUMBER: _ClassVar[int]
     epoch: int
     revision: int
     items: _containers.RepeatedCompositeFieldContainer[ItemAnswer]
@@ -442,4 +443,5 @@ class Answer(_message.Message):
     out_of_time: bool
     cost: Cost
     added_bodies: _containers.RepeatedCompositeFieldContainer[_overlay_pb2.AddedBody]
-    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., items: _Optional[_Iterable[_Union[ItemAnswer, _Mapping]]] = ..., bulk: _Optional[_Union[BulkAnswer, _Mapping]] = ..., stopped_at: _Optional[int] = ..., out_of_time: bool = ..., cost: _Optional[_Union[Cost, _Mapping]] = ..., added_bodies: _Optional[_Iterable[_Union[_overlay_pb2.AddedBody, _Mapping]]] = ...) -> None: ...
+    coverage: _scene_pb2.Coverage
+    def __init__(self, epoch: _Optional[int] = ..., revision: _Optional[int] = ..., items: _Optional[_Iterable[_Union[ItemAnswer, _Mapping]]] = ..., bulk: _Optional[_Union[BulkAnswer, _Mapping]] = ..., stopped_at: _Optional[int] = ..., out_of_time: bool = ..., cost: _Optional[_Union[Cost, _Mapping]] = ..., added_bodies: _Optional[_Iterable[_Union[_overlay_pb2.AddedBody, _Mapping]]] = ..., coverage: _Optional[_Union[_scene_pb2.Coverage, _Mapping]] = ...) -> None: ...

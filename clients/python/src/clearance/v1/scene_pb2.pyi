@@ -8,12 +8,35 @@ from typing import ClassVar as _ClassVar, Optional as _Optional, Union as _Union
 
 DESCRIPTOR: _descriptor.FileDescriptor
 
+class Effect(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    EFFECT_UNSPECIFIED: _ClassVar[Effect]
+    EFFECT_VERDICT: _ClassVar[Effect]
+    EFFECT_MARGIN: _ClassVar[Effect]
+    EFFECT_DISTANCE: _ClassVar[Effect]
+    EFFECT_WITNESS: _ClassVar[Effect]
+    EFFECT_DEPTH: _ClassVar[Effect]
+    EFFECT_PATCH: _ClassVar[Effect]
+    EFFECT_MOTION: _ClassVar[Effect]
+    EFFECT_DERIVATIVES: _ClassVar[Effect]
+    EFFECT_EVENTS: _ClassVar[Effect]
+
 class BroadPhase(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     BROAD_PHASE_UNSPECIFIED: _ClassVar[BroadPhase]
     BROAD_PHASE_TREE: _ClassVar[BroadPhase]
     BROAD_PHASE_SWEEP_AND_PRUNE: _ClassVar[BroadPhase]
     BROAD_PHASE_EXHAUSTIVE: _ClassVar[BroadPhase]
+EFFECT_UNSPECIFIED: Effect
+EFFECT_VERDICT: Effect
+EFFECT_MARGIN: Effect
+EFFECT_DISTANCE: Effect
+EFFECT_WITNESS: Effect
+EFFECT_DEPTH: Effect
+EFFECT_PATCH: Effect
+EFFECT_MOTION: Effect
+EFFECT_DERIVATIVES: Effect
+EFFECT_EVENTS: Effect
 BROAD_PHASE_UNSPECIFIED: BroadPhase
 BROAD_PHASE_TREE: BroadPhase
 BROAD_PHASE_SWEEP_AND_PRUNE: BroadPhase
@@ -54,7 +77,7 @@ class Everything(_message.Message):
     def __init__(self) -> None: ...
 
 class Edit(_message.Message):
-    __slots__ = ("add_body", "move_body", "remove_body", "replace_shape", "set_groups", "set_layers", "add_robot", "move_robot", "remove_robot", "set_allowed_collision", "set_pair_margin", "set_enabled", "insert_points", "clear_box")
+    __slots__ = ("add_body", "move_body", "remove_body", "replace_shape", "set_groups", "set_layers", "add_robot", "move_robot", "remove_robot", "set_allowed_collision", "set_pair_margin", "set_enabled", "insert_points", "clear_box", "declare_effects")
     ADD_BODY_FIELD_NUMBER: _ClassVar[int]
     MOVE_BODY_FIELD_NUMBER: _ClassVar[int]
     REMOVE_BODY_FIELD_NUMBER: _ClassVar[int]
@@ -69,6 +92,7 @@ class Edit(_message.Message):
     SET_ENABLED_FIELD_NUMBER: _ClassVar[int]
     INSERT_POINTS_FIELD_NUMBER: _ClassVar[int]
     CLEAR_BOX_FIELD_NUMBER: _ClassVar[int]
+    DECLARE_EFFECTS_FIELD_NUMBER: _ClassVar[int]
     add_body: AddBody
     move_body: MoveBody
     remove_body: RemoveBody
@@ -83,7 +107,8 @@ class Edit(_message.Message):
     set_enabled: SetEnabled
     insert_points: InsertPoints
     clear_box: ClearBox
-    def __init__(self, add_body: _Optional[_Union[AddBody, _Mapping]] = ..., move_body: _Optional[_Union[MoveBody, _Mapping]] = ..., remove_body: _Optional[_Union[RemoveBody, _Mapping]] = ..., replace_shape: _Optional[_Union[ReplaceShape, _Mapping]] = ..., set_groups: _Optional[_Union[SetGroups, _Mapping]] = ..., set_layers: _Optional[_Union[SetLayers, _Mapping]] = ..., add_robot: _Optional[_Union[AddRobot, _Mapping]] = ..., move_robot: _Optional[_Union[MoveRobot, _Mapping]] = ..., remove_robot: _Optional[_Union[RemoveRobot, _Mapping]] = ..., set_allowed_collision: _Optional[_Union[SetAllowedCollision, _Mapping]] = ..., set_pair_margin: _Optional[_Union[SetPairMargin, _Mapping]] = ..., set_enabled: _Optional[_Union[SetEnabled, _Mapping]] = ..., insert_points: _Optional[_Union[InsertPoints, _Mapping]] = ..., clear_box: _Optional[_Union[ClearBox, _Mapping]] = ...) -> None: ...
+    declare_effects: DeclareEffects
+    def __init__(self, add_body: _Optional[_Union[AddBody, _Mapping]] = ..., move_body: _Optional[_Union[MoveBody, _Mapping]] = ..., remove_body: _Optional[_Union[RemoveBody, _Mapping]] = ..., replace_shape: _Optional[_Union[ReplaceShape, _Mapping]] = ..., set_groups: _Optional[_Union[SetGroups, _Mapping]] = ..., set_layers: _Optional[_Union[SetLayers, _Mapping]] = ..., add_robot: _Optional[_Union[AddRobot, _Mapping]] = ..., move_robot: _Optional[_Union[MoveRobot, _Mapping]] = ..., remove_robot: _Optional[_Union[RemoveRobot, _Mapping]] = ..., set_allowed_collision: _Optional[_Union[SetAllowedCollision, _Mapping]] = ..., set_pair_margin: _Optional[_Union[SetPairMargin, _Mapping]] = ..., set_enabled: _Optional[_Union[SetEnabled, _Mapping]] = ..., insert_points: _Optional[_Union[InsertPoints, _Mapping]] = ..., clear_box: _Optional[_Union[ClearBox, _Mapping]] = ..., declare_effects: _Optional[_Union[DeclareEffects, _Mapping]] = ...) -> None: ...
 
 class AddBody(_message.Message):
     __slots__ = ("name", "shape", "pose", "groups", "layers", "mask", "padding", "scale")
@@ -216,6 +241,36 @@ class SetPairMargin(_message.Message):
     b: Party
     margin: float
     def __init__(self, a: _Optional[_Union[Party, _Mapping]] = ..., b: _Optional[_Union[Party, _Mapping]] = ..., margin: _Optional[float] = ...) -> None: ...
+
+class DeclareEffects(_message.Message):
+    __slots__ = ("a", "b", "effects")
+    A_FIELD_NUMBER: _ClassVar[int]
+    B_FIELD_NUMBER: _ClassVar[int]
+    EFFECTS_FIELD_NUMBER: _ClassVar[int]
+    a: Party
+    b: Party
+    effects: Effects
+    def __init__(self, a: _Optional[_Union[Party, _Mapping]] = ..., b: _Optional[_Union[Party, _Mapping]] = ..., effects: _Optional[_Union[Effects, _Mapping]] = ...) -> None: ...
+
+class Effects(_message.Message):
+    __slots__ = ("effects",)
+    EFFECTS_FIELD_NUMBER: _ClassVar[int]
+    effects: _containers.RepeatedScalarFieldContainer[Effect]
+    def __init__(self, effects: _Optional[_Iterable[_Union[Effect, str]]] = ...) -> None: ...
+
+class PartyPair(_message.Message):
+    __slots__ = ("a", "b")
+    A_FIELD_NUMBER: _ClassVar[int]
+    B_FIELD_NUMBER: _ClassVar[int]
+    a: Party
+    b: Party
+    def __init__(self, a: _Optional[_Union[Party, _Mapping]] = ..., b: _Optional[_Union[Party, _Mapping]] = ...) -> None: ...
+
+class Coverage(_message.Message):
+    __slots__ = ("declared_empty",)
+    DECLARED_EMPTY_FIELD_NUMBER: _ClassVar[int]
+    declared_empty: _containers.RepeatedCompositeFieldContainer[PartyPair]
+    def __init__(self, declared_empty: _Optional[_Iterable[_Union[PartyPair, _Mapping]]] = ...) -> None: ...
 
 class SceneSummary(_message.Message):
     __slots__ = ("name", "epoch", "revision", "bodies", "robots", "broad_phase")

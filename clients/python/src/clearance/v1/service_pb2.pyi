@@ -36,6 +36,7 @@ class ErrorReason(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     ERROR_REASON_NO_TOKEN: _ClassVar[ErrorReason]
     ERROR_REASON_UNKNOWN_TOKEN: _ClassVar[ErrorReason]
     ERROR_REASON_MISSING_SCOPE: _ClassVar[ErrorReason]
+    ERROR_REASON_EFFECT_NOT_DECLARED: _ClassVar[ErrorReason]
     ERROR_REASON_EFFECT_NOT_BUILT: _ClassVar[ErrorReason]
 ERROR_REASON_UNSPECIFIED: ErrorReason
 ERROR_REASON_INVALID_FIELD: ErrorReason
@@ -55,6 +56,7 @@ ERROR_REASON_KEY_REUSED: ErrorReason
 ERROR_REASON_NO_TOKEN: ErrorReason
 ERROR_REASON_UNKNOWN_TOKEN: ErrorReason
 ERROR_REASON_MISSING_SCOPE: ErrorReason
+ERROR_REASON_EFFECT_NOT_DECLARED: ErrorReason
 ERROR_REASON_EFFECT_NOT_BUILT: ErrorReason
 
 class CreateSceneRequest(_message.Message):

@@ -67,16 +67,18 @@ class MovedBody(_message.Message):
     def __init__(self, id: _Optional[int] = ..., pose: _Optional[_Union[_geometry_pb2.Pose, _Mapping]] = ..., bounds: _Optional[_Union[_geometry_pb2.Aabb, _Mapping]] = ...) -> None: ...
 
 class PairEntry(_message.Message):
-    __slots__ = ("a", "b", "allowed", "margin")
+    __slots__ = ("a", "b", "allowed", "margin", "effects")
     A_FIELD_NUMBER: _ClassVar[int]
     B_FIELD_NUMBER: _ClassVar[int]
     ALLOWED_FIELD_NUMBER: _ClassVar[int]
     MARGIN_FIELD_NUMBER: _ClassVar[int]
+    EFFECTS_FIELD_NUMBER: _ClassVar[int]
     a: _scene_pb2.Party
     b: _scene_pb2.Party
     allowed: bool
     margin: float
-    def __init__(self, a: _Optional[_Union[_scene_pb2.Party, _Mapping]] = ..., b: _Optional[_Union[_scene_pb2.Party, _Mapping]] = ..., allowed: bool = ..., margin: _Optional[float] = ...) -> None: ...
+    effects: _scene_pb2.Effects
+    def __init__(self, a: _Optional[_Union[_scene_pb2.Party, _Mapping]] = ..., b: _Optional[_Union[_scene_pb2.Party, _Mapping]] = ..., allowed: bool = ..., margin: _Optional[float] = ..., effects: _Optional[_Union[_scene_pb2.Effects, _Mapping]] = ...) -> None: ...
 
 class PoseStreamRequest(_message.Message):
     __slots__ = ("scene", "epoch", "interval", "bodies", "robots")
