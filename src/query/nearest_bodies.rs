@@ -144,7 +144,7 @@ impl<'a> Neighbours<'a> {
             normal_error: found.normal_error,
         };
         let verdict = Verdict::of(&found.bracket, margin, found.termination);
-        let placed = [(&*asker.shape, &asker.at), (&*body.shape, &body.placement)];
+        let placed = [(asker.shape, &asker.at), (&*body.shape, &body.placement)];
         let touches = self.wants.patch && verdict != Verdict::Free;
         // What was asked about is side A, whatever its id: each pair here is one of it and another.
         PairAnswer {

@@ -85,7 +85,8 @@ impl Snapshot {
             return Ok(());
         }
         let party = |key| self.party(key, &|_| None).unwrap_or(Party::Everything);
-        Err(Reason::NotDeclared { a: party(a), b: party(b), effect: Effect::Margin, margin }.of(field))
+        let pair = Box::new((party(a), party(b)));
+        Err(Reason::NotDeclared { pair, effect: Effect::Margin, margin }.of(field))
     }
 
     /// Takes back all entries that name a party which leaves the scene.

@@ -84,12 +84,10 @@ pub enum Reason {
     #[error("a body or link makes no pair with itself")]
     PairWithItself,
     /// A margin above zero for a pair whose declared effects are without `margin`.
-    #[error("the pair of {a} and {b} is declared without the effect `{effect}`, and has a margin of {margin} m")]
+    #[error("the pair of {} and {} is declared without the effect `{effect}`, and has a margin of {margin} m", pair.0, pair.1)]
     NotDeclared {
-        /// One side.
-        a: Party,
-        /// The other side.
-        b: Party,
+        /// Both sides.
+        pair: Box<(Party, Party)>,
         /// The effect that is lacking.
         effect: Effect,
         /// Metres.

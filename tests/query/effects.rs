@@ -212,7 +212,7 @@ fn pairs_declared_empty_are_never_looked_at_and_the_answer_says_so() {
         let context = Context { filter, ..with(Wants::ALL) };
         let one = collide(&plain, vec![Subject::All], context.clone()).unwrap();
         let two = collide(&empty, vec![Subject::All], context.clone()).unwrap();
-        assert_eq!(two.coverage.declared_empty, [ours.clone()]);
+        assert_eq!(two.coverage.declared_empty, std::slice::from_ref(&ours));
         assert!(one.coverage.declared_empty.is_empty());
         let kept = |pair: &&_| -> bool {
             let clearance::query::PairAnswer { a, b, .. } = pair;
