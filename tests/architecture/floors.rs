@@ -17,6 +17,8 @@ const GEOMETRY: &str = "geometry";
 const BRACKET: &str = "narrow_phase::Bracket";
 const COST: &str = "narrow_phase::Cost";
 const TERMINATION: &str = "narrow_phase::Termination";
+const PATCH: &str = "narrow_phase::ContactPatch";
+const PATCH_POINT: &str = "narrow_phase::ContactPoint";
 /// The choice of a solver stands in questions: a plain value too.
 const SOLVER: &str = "narrow_phase::Solver";
 /// The world that changes. Only `scene` and `service` know it; everybody else sees snapshots.
@@ -56,7 +58,20 @@ pub const FLOORS: &[Floor] = &[
     },
     Floor {
         name: "transports",
-        may_name: &[GEOMETRY, "limits", "robot", "scene", "query", "service", BRACKET, COST, TERMINATION, SOLVER],
+        may_name: &[
+            GEOMETRY,
+            "limits",
+            "robot",
+            "scene",
+            "query",
+            "service",
+            BRACKET,
+            COST,
+            TERMINATION,
+            PATCH,
+            PATCH_POINT,
+            SOLVER,
+        ],
         but_not: &[WRITER],
     },
     Floor {

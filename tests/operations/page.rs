@@ -2,7 +2,7 @@
 //! what else comes with it.
 
 use clearance::limits::LimitExceeded;
-use clearance::scene::{Epoch, Revision};
+use clearance::scene::{Effect, Epoch, Party, Revision};
 use clearance::service::{Outcome, ServiceError};
 use clearance::transports::grpc::status_of;
 
@@ -22,6 +22,8 @@ fn errors() -> Vec<ServiceError> {
         ServiceError::Limit(LimitExceeded { limit: "max_items", asked: 2, allowed: 1 }),
         ServiceError::DeadlineExceeded,
         ServiceError::HashMismatch { problem: text() },
+        ServiceError::EffectNotDeclared { effect: Effect::Depth, a: Party::Everything, b: Party::Everything },
+        ServiceError::EffectNotBuilt { field: "context.wants", effect: "patch" },
         ServiceError::ShuttingDown,
         ServiceError::Internal { incident: 1 },
     ]
