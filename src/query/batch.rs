@@ -134,6 +134,9 @@ impl<'a> Prepared<'a> {
 
     /// The same of the subjects. A bare shape is in no pair of the scene.
     fn of_subjects(self, request: &PairQuery, wanted: Effects) -> Result<Self, Refused> {
+        if !self.asked.places().any(|place| place.snapshot.declares_effects()) {
+            return Ok(self);
+        }
         let everybody = |subject: &Subject| matches!(subject, Subject::All | Subject::ChangedSince(_));
         let id = |subject: &Subject| match subject {
             Subject::Body(id) => Some(*id),

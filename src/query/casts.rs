@@ -76,8 +76,8 @@ impl<'a> Casts<'a> {
     pub fn new(snapshot: &'a Snapshot, request: &'a CastShapes) -> Result<Self, Refused> {
         checked_resolution(request.resolution)?;
         let opponents = Opponents::without_solver(snapshot, &request.context)?;
-        let bodies: Vec<BodyId> = request.items.iter().filter_map(|item| item.moved.body()).collect();
-        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Motion))?;
+        let bodies = request.items.iter().filter_map(|item| item.moved.body());
+        let coverage = opponents.coverage(bodies, Effects::of(Effect::Motion))?;
         Ok(Self { opponents, request, coverage })
     }
 
@@ -170,8 +170,8 @@ impl<'a> MovingPairs<'a> {
     pub fn new(snapshot: &'a Snapshot, request: &'a CheckMovingPairs) -> Result<Self, Refused> {
         checked_resolution(request.resolution)?;
         let opponents = Opponents::without_solver(snapshot, &request.context)?;
-        let bodies: Vec<BodyId> = request.items.iter().flatten().filter_map(|item| item.moved.body()).collect();
-        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Motion))?;
+        let bodies = request.items.iter().flatten().filter_map(|item| item.moved.body());
+        let coverage = opponents.coverage(bodies, Effects::of(Effect::Motion))?;
         Ok(Self { opponents, request, coverage })
     }
 

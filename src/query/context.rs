@@ -16,7 +16,8 @@ impl<'a> Sieve<'a> {
     /// Checks the whole context.
     ///
     /// # Errors
-    /// Numbers that are negative or not finite, or beyond their cap; an effect that this build is without; groups and bodies that are not in the scene.
+    /// Numbers that are negative, not finite or beyond their cap; an effect that this build is without; groups and bodies that
+    /// are not in the scene.
     pub fn new(snapshot: &Snapshot, context: &'a Context) -> Result<Self, Refused> {
         length("context.margin", context.margin)?;
         if let Some(cut_off) = context.cut_off {

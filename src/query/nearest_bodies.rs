@@ -51,8 +51,7 @@ impl<'a> Neighbours<'a> {
             Subject::Body(id) => Some(*id),
             Subject::All | Subject::ChangedSince(_) | Subject::Shape { .. } => None,
         };
-        let bodies: Vec<BodyId> = request.items.iter().filter_map(id).collect();
-        let coverage = opponents.coverage(&bodies, Effects::of(Effect::Distance))?;
+        let coverage = opponents.coverage(request.items.iter().filter_map(id), Effects::of(Effect::Distance))?;
         Ok(Self { opponents, request, wants, coverage })
     }
 

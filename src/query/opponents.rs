@@ -31,12 +31,16 @@ impl<'a> Opponents<'a> {
     }
 
     /// Checks what the scene declares of these bodies, for a question that wants these effects beside what its context says.
-    pub fn coverage(&self, bodies: &[BodyId], besides: Effects) -> Result<Coverage, Refused> {
+    pub fn coverage(&self, bodies: impl Iterator<Item = BodyId>, besides: Effects) -> Result<Coverage, Refused> {
+        if !self.snapshot.declares_effects() {
+            return Ok(Coverage::default());
+        }
+        let bodies: Vec<BodyId> = bodies.collect();
         if bodies.is_empty() {
             return Ok(Coverage::default());
         }
         let wanted = effects_of(self.context.wants, self.context.margin).and(besides);
-        coverage(self.snapshot, &Asker::Bodies(bodies), self.context, wanted)
+        coverage(self.snapshot, &Asker::Bodies(&bodies), self.context, wanted)
     }
 
     /// No pair has a larger margin; metres.
