@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use crate::query::Wants;
 use crate::service::{CallNotes, Ending, Observer, Question, Seldom};
 
 /// What the lines are filtered by.
@@ -71,9 +72,8 @@ impl Observer for SlowQueries {
 
 /// What was wanted, in the words of the protocol.
 fn wants(question: &Question) -> String {
-    let wants = question.wants;
-    let named =
-        [("distance", wants.distance), ("witness", wants.witness), ("depth", wants.depth), ("pairs", wants.pairs)];
+    let Wants { distance, witness, depth, pairs, patch } = question.wants;
+    let named = [("distance", distance), ("witness", witness), ("depth", depth), ("pairs", pairs), ("patch", patch)];
     let wanted = named.into_iter().filter_map(|(name, wanted)| wanted.then_some(name));
     ["verdict"].into_iter().chain(wanted).collect::<Vec<_>>().join(",")
 }
@@ -86,7 +86,7 @@ mod tests {
     use tracing_subscriber::fmt::MakeWriter;
 
     use super::*;
-    use crate::query::{CheckStates, Context, Mode, Wants};
+    use crate::query::{CheckStates, Context, Mode};
     use crate::service::{Asker, Config, Patience, Rpc, Service, ServiceError, Target};
 
     /// Log lines of one test.
@@ -139,7 +139,8 @@ mod tests {
                 let call = service.begin_call(Rpc { name: "CheckStates", streams: false }, asker);
                 let question = move |view: &crate::service::View| {
                     std::thread::sleep(length);
-                    let context = Context { wants: Wants::ALL, margin: 0.5, ..Context::default() };
+                    let wants = Wants { patch: false, ..Wants::ALL }; // Not every build has it.
+                    let context = Context { wants, margin: 0.5, ..Context::default() };
                     view.check_states(&CheckStates {
                         robot: "nobody".to_owned(),
                         positions: vec![0.0; 6],
@@ -182,7 +183,7 @@ mod tests {
 
     #[test]
     fn what_is_wanted_is_told_in_the_words_of_the_protocol() {
-        let wants_all = Wants { distance: true, pairs: true, ..Wants::VERDICT };
+        let wants_all = Wants { distance: true, pairs: true, patch: true, ..Wants::VERDICT };
         let question = Question {
             of: "states",
             items: 1,
@@ -191,6 +192,6 @@ mod tests {
             absolute_tolerance: 0.0,
             relative_tolerance: 0.0,
         };
-        assert_eq!(wants(&question), "verdict,distance,pairs");
+        assert_eq!(wants(&question), "verdict,distance,pairs,patch");
     }
 }
