@@ -138,11 +138,7 @@ impl<'a> Prepared<'a> {
             return Ok(self);
         }
         let everybody = |subject: &Subject| matches!(subject, Subject::All | Subject::ChangedSince(_));
-        let id = |subject: &Subject| match subject {
-            Subject::Body(id) => Some(*id),
-            Subject::All | Subject::ChangedSince(_) | Subject::Shape { .. } => None,
-        };
-        let bodies: Vec<BodyId> = request.items.iter().filter_map(id).collect();
+        let bodies: Vec<BodyId> = request.items.iter().filter_map(Subject::body).collect();
         let all = request.items.iter().any(everybody);
         if !all && bodies.is_empty() {
             return Ok(self);

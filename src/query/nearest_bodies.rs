@@ -47,11 +47,9 @@ impl<'a> Neighbours<'a> {
         }
         let wants = request.context.wants.closed();
         let opponents = Opponents::new(snapshot, &request.context)?;
-        let id = |subject: &Subject| match subject {
-            Subject::Body(id) => Some(*id),
-            Subject::All | Subject::ChangedSince(_) | Subject::Shape { .. } => None,
-        };
-        let coverage = opponents.coverage(request.items.iter().filter_map(id), Effects::of(Effect::Distance))?;
+        // In an overlap the order is that of the depths.
+        let coverage =
+            opponents.coverage(request.items.iter().filter_map(Subject::body), Effects::of(Effect::Depth))?;
         Ok(Self { opponents, request, wants, coverage })
     }
 

@@ -182,6 +182,17 @@ pub enum Subject {
     },
 }
 
+impl Subject {
+    /// The body, if it is one body of the scene.
+    #[must_use]
+    pub fn body(&self) -> Option<BodyId> {
+        match self {
+            Self::Body(id) => Some(*id),
+            Self::All | Self::ChangedSince(_) | Self::Shape { .. } => None,
+        }
+    }
+}
+
 /// Which pairs are within a distance? Every one of them with its bracket, where the other questions want the nearest.
 #[derive(Clone, Debug)]
 pub struct Clearance {

@@ -7,7 +7,7 @@ use super::answer::{PairAnswer, Side, Verdict, Witness};
 use super::patch::patch;
 use super::request::{Context, Wants};
 use crate::geometry::{Placement, Shape};
-use crate::narrow_phase::{Bracket, ContactPatch, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
+use crate::narrow_phase::{Bracket, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
 
 /// A placed shape and the side of a pair it stands for. The side's subshape is filled in from what is found.
 #[derive(Clone)]
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
         let verdict = Verdict::of(&found.bracket, margin, found.termination);
         // Points of an overlap that was only proved are not where it is deepest.
         let measured = self.plan.wants.depth || found.bracket.upper > 0.0;
-        let answer = PairAnswer {
+        let mut answer = PairAnswer {
             a: a.side.with_subshape(found.subshape_a),
             b: b.side.with_subshape(found.subshape_b),
             verdict,
@@ -185,7 +185,7 @@ impl<'a> Search<'a> {
                 point_error: found.point_error,
                 normal_error: found.normal_error,
             }),
-            patch: self.patch(found, a, b, verdict, margin),
+            patch: None,
             termination: found.termination,
         };
         self.bracket = union(self.bracket, found.bracket);
@@ -194,29 +194,19 @@ impl<'a> Search<'a> {
             Some(within) => found.bracket.lower <= within,
             None => self.plan.wants.pairs && verdict != Verdict::Free,
         };
+        let (best, comes_first): (_, fn(&PairAnswer, &PairAnswer) -> bool) =
+            if self.plan.wants.distance { (&self.nearest, is_nearer) } else { (&self.decider, is_graver) };
+        let leads = best.as_ref().is_none_or(|best| comes_first(&answer, best));
+        // Only of a pair that may be told, and now, while its shapes are at hand.
+        if self.plan.wants.patch && verdict != Verdict::Free && (listed || leads) {
+            answer.patch = patch([(a.shape, a.at), (b.shape, b.at)], found, margin, self.plan.context, &mut self.cost);
+        }
         if listed {
             self.list(answer.clone());
         }
-        let place = if self.plan.wants.distance { &mut self.nearest } else { &mut self.decider };
-        let comes_first = if self.plan.wants.distance { is_nearer } else { is_graver };
-        if place.as_ref().is_none_or(|best| comes_first(&answer, best)) {
-            *place = Some(answer);
+        if leads {
+            *(if self.plan.wants.distance { &mut self.nearest } else { &mut self.decider }) = Some(answer);
         }
-    }
-
-    /// Where the faces touch, if that is wanted and the pair is one that is told: made while its shapes are at hand.
-    fn patch(
-        &mut self,
-        found: &Separation,
-        a: &Party,
-        b: &Party,
-        verdict: Verdict,
-        margin: f64,
-    ) -> Option<Box<ContactPatch>> {
-        if !self.plan.wants.patch || verdict == Verdict::Free {
-            return None;
-        }
-        patch([(a.shape, a.at), (b.shape, b.at)], found, margin, self.plan.context, &mut self.cost)
     }
 
     /// Keeps a pair for the list; those that the limit will cut off are dropped now and then, so that the list stays short.

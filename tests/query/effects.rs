@@ -167,6 +167,10 @@ fn motions_and_events_are_effects() {
     assert_eq!(Some(refused), not_declared(Effect::Events, group("crates"), Party::Everything));
     let near = NearestBodies { items: vec![Subject::Body(BodyId(1))], count: 2, context: Context::default() };
     assert!(Neighbours::new(&scene, &near).is_ok());
+    // Overlaps are ordered by their depths, so that these have to be declared.
+    let shallow = declared(&[declare(group("crates"), Party::Everything, &[Effect::Distance])]);
+    let refused = Neighbours::new(&shallow, &near).err();
+    assert_eq!(refused, not_declared(Effect::Depth, group("crates"), Party::Everything));
 }
 
 #[test]

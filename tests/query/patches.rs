@@ -198,6 +198,24 @@ fn patches_are_the_kernels_own_and_change_nothing_else() {
     assert!(corners > 100 && edges > 100 && points > 100 && none > 10, "{corners} {edges} {points} {none}");
 }
 
+/// Ten boxes overlap one; the nearest is met first, as its box is no farther and its id the least, and the others never lead.
+#[test]
+fn of_pairs_that_are_not_told_no_patch_is_made() {
+    let mut bodies = vec![(cuboid(0.5, 0.5, 0.5), Pose::identity())];
+    bodies.extend((0..10).map(|i| (cuboid(0.1, 0.1, 0.1), place(0.0, 0.0, 0.5 + 0.002 * i as f64))));
+    let snapshot = scene_of(bodies).snapshot();
+    let ask_one = |context| {
+        let query =
+            PairQuery { items: vec![Subject::Body(snapshot.bodies().next().unwrap().id)], mode: Mode::All, context };
+        Prepared::distance(&*snapshot, &query).unwrap().answer(&|| false).items.remove(0)
+    };
+    let one = ask_one(with(PATCH, 0.0));
+    let all = ask_one(with(Wants { pairs: true, ..PATCH }, 0.0));
+    assert_eq!((one.pairs.len(), all.pairs.len()), (0, 10));
+    assert_eq!(all.cost.patch_corners, 10 * one.cost.patch_corners);
+    assert_eq!(one.nearest, all.nearest);
+}
+
 #[test]
 fn tracked_contacts_have_their_patches() {
     let mut scene = table();

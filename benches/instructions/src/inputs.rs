@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use clearance::geometry::{ConvexHull, Placement, Pose, Quaternion, Shape, TriangleMesh, Vec3};
 use clearance::narrow_phase::{Goal, separation};
+use clearance::scene::{Edit, Epoch, NewBody, Scene, Snapshot};
 
 /// Numbers in 0..1 from a linear congruential generator (Knuth's MMIX constants).
 pub struct Random(pub u64);
@@ -112,4 +113,19 @@ pub fn mesh(random: &mut Random, around: u32, rows: u32) -> Shape {
         }
     }
     Shape::mesh(Arc::new(TriangleMesh::surface(vertices, triangles).expect("indices are in range")))
+}
+
+/// A scene of boxes and hulls in a loose heap, some of which touch.
+pub fn heap(bodies: usize) -> Arc<Snapshot> {
+    let mut random = Random(3);
+    let body = |i: usize| {
+        let shape = if i.is_multiple_of(2) { cuboid(&mut random) } else { Shape::hull(hull(&mut random, 40)) };
+        let v = random.vector() * 3.0;
+        let pose = Pose::new(v, Quaternion { w: 1.0, x: v.y, y: v.z, z: v.x }).expect("numbers are finite");
+        Edit::AddBody(NewBody::new(format!("body {i}"), Arc::new(shape), pose))
+    };
+    let mut scene = Scene::new(Epoch(1));
+    let edits: Vec<Edit> = (0..bodies).map(body).collect();
+    scene.apply(&edits, None).expect("every body may be added");
+    scene.snapshot()
 }

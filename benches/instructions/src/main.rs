@@ -1,4 +1,5 @@
-//! Runs one hot kernel over fixed inputs, for callgrind to count: `instructions KERNEL`, or without a name lists them all.
+//! Runs one hot kernel over fixed inputs, for callgrind to count: `instructions KERNEL`, or without a name lists them all. With
+//! `--allocations` after the name it counts what the kernel allocates itself: how often, and how many bytes.
 //!
 //! Only what runs below [`measured`] is counted; it makes [`CALLS`] calls.
 
@@ -10,7 +11,9 @@ use std::process::ExitCode;
 
 use clearance::geometry::{Shape, Vec3};
 use clearance::narrow_phase::{Accuracy, Depth, Goal, separation};
-use inputs::{Lie, Pair, Random, cuboid, ellipsoid, hull, mesh, pairs};
+use clearance::query::{Context, Mode, PairQuery, Prepared, Subject, Wants};
+use clearance::scene::BodyId;
+use inputs::{Lie, Pair, Random, cuboid, ellipsoid, heap, hull, mesh, pairs};
 
 const CALLS: usize = 100;
 /// One in ten, each called ten times: a mesh takes a while to build under callgrind.
@@ -40,6 +43,9 @@ fn kernels() -> Vec<(String, fn() -> Kernel)> {
     add("depth, hull 8", || ask(Depth::Penetration, pairs(CALLS, Lie::Overlapping, |r| Shape::hull(hull(r, 8)))));
     add("depth, hull 250", || ask(Depth::Penetration, pairs(CALLS, Lie::Overlapping, |r| Shape::hull(hull(r, 250)))));
     add("depth, hull 940", || ask(Depth::Penetration, pairs(CALLS, Lie::Overlapping, |r| Shape::hull(hull(r, 940)))));
+    add("question, verdicts", || question(Wants::VERDICT));
+    add("question, distances", || question(Wants { distance: true, ..Wants::VERDICT }));
+    add("question, witnesses and depths", || question(Wants { patch: false, ..Wants::ALL }));
     add("distance apart, mesh 800", || ask(Depth::Distance, pairs(MESHES, Lie::Apart, |r| mesh(r, 20, 21))));
     all
 }
@@ -51,6 +57,18 @@ fn support(points: usize) -> Kernel {
     let directions: Vec<Vec3> = (0..CALLS).map(|_| random.vector()).collect();
     Box::new(move |i| {
         black_box(hull.farthest(directions[i], 0));
+    })
+}
+
+/// What meets each body of a heap, one after the other: the whole way of a question below the service.
+fn question(wants: Wants) -> Kernel {
+    let snapshot = heap(CALLS);
+    let ids: Vec<BodyId> = snapshot.bodies().map(|body| body.id).collect();
+    Box::new(move |i| {
+        let context = Context { wants, margin: 0.01, ..Context::default() };
+        let query = PairQuery { items: vec![Subject::Body(ids[i % ids.len()])], mode: Mode::All, context };
+        let prepared = Prepared::collide(&*snapshot, &query).expect("nothing in the question is refused");
+        black_box(prepared.answer(&|| false));
     })
 }
 
@@ -80,7 +98,13 @@ fn main() -> ExitCode {
         eprintln!("no kernel {wanted}");
         return ExitCode::FAILURE;
     };
-    measured(&mut make());
+    let mut kernel = make();
+    if env::args().nth(2).as_deref() == Some("--allocations") {
+        let counted = allocation_counter::measure(|| measured(&mut kernel));
+        println!("{} {}", counted.count_total, counted.bytes_total);
+        return ExitCode::SUCCESS;
+    }
+    measured(&mut kernel);
     println!("{CALLS}");
     ExitCode::SUCCESS
 }
