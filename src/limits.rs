@@ -19,6 +19,12 @@ pub struct Limits {
     pub max_pairs: usize,
     /// States that one motion may be looked at in.
     pub max_motion_states: usize,
+    /// Items that an estimate measures of its question.
+    pub max_estimate_sample: usize,
+    /// Pairings of an output and a tolerance that one estimate measures.
+    pub max_estimate_rows: usize,
+    /// How long an estimate measures, seconds.
+    pub max_estimate_seconds: usize,
     /// Overlays of one question.
     pub max_overlays: usize,
     /// Edits and attached bodies of all overlays of one question together.
@@ -109,6 +115,9 @@ impl Default for Limits {
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
             max_motion_states: 100_000,
+            max_estimate_sample: 256,
+            max_estimate_rows: 64,
+            max_estimate_seconds: 2,
             max_overlays: 1_024,
             max_overlay_edits: 16_384,
             max_scenes: 1_000,
@@ -181,6 +190,9 @@ impl Limits {
             max_joint_values,
             max_pairs,
             max_motion_states,
+            max_estimate_sample,
+            max_estimate_rows,
+            max_estimate_seconds,
             max_overlays,
             max_overlay_edits,
             max_scenes,
@@ -229,6 +241,19 @@ impl Limits {
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
             row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
+            row(
+                "max_estimate_sample",
+                max_estimate_sample,
+                "items that an estimate measures",
+                "a larger sample is cut down to this; the answer says how large it was",
+            ),
+            row("max_estimate_rows", max_estimate_rows, "outputs times tolerances per estimate", EXHAUSTED),
+            row(
+                "max_estimate_seconds",
+                max_estimate_seconds,
+                "seconds that an estimate measures",
+                "a longer time is shortened to this; an estimate without one gets it",
+            ),
             row("max_overlays", max_overlays, "overlays per question", EXHAUSTED),
             row("max_overlay_edits", max_overlay_edits, "edits of all overlays per question", EXHAUSTED),
             row("max_scenes", max_scenes, "scenes", EXHAUSTED),

@@ -9,7 +9,7 @@ use super::motions::Motions;
 use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
 use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Mode, PairQuery, Subject};
-use super::states::States;
+use super::states::{Scratch, States};
 use crate::narrow_phase::Cost;
 use crate::scene::{Asker, BodyId, Effect, Effects};
 
@@ -27,6 +27,13 @@ enum Question<'a> {
     States(States<'a>),
     Motions(Motions<'a>),
     Pairs(Pairs<'a>),
+}
+
+/// Asks one item after the other, with memory that is used again.
+pub struct OneByOne<'p, 'a> {
+    prepared: &'p Prepared<'a>,
+    /// Memory of states, of the world that the last item was asked in.
+    scratch: Option<(usize, Scratch)>,
 }
 
 /// The answers to a range of items.
@@ -178,6 +185,12 @@ impl<'a> Prepared<'a> {
         self.questions[0].len()
     }
 
+    /// Joint positions of one state; 0 where nothing moves.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.questions[0].width()
+    }
+
     /// Whether there is nothing to answer.
     #[must_use]
     pub fn is_empty(&self) -> bool {
@@ -188,22 +201,14 @@ impl<'a> Prepared<'a> {
     /// left is not run.
     #[must_use]
     pub fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> Part {
-        // Memory that states use again, of the world that the last item was asked in.
-        let mut scratch = None;
-        self.run_items(range, stop, |i| {
-            let number = self.asked.number(i);
-            match &self.questions[number] {
-                Question::States(states) => {
-                    let (_, memory) = match scratch.take() {
-                        Some(of) if matches!(of, (world, _) if world == number) => scratch.insert(of),
-                        _ => scratch.insert((number, states.scratch())),
-                    };
-                    states.answer(i, memory, stop)
-                }
-                Question::Motions(motions) => motions.answer(i, stop),
-                Question::Pairs(pairs) => pairs.answer(i, stop),
-            }
-        })
+        let mut items = self.one_by_one();
+        self.run_items(range, stop, |i| items.look_at(i, stop))
+    }
+
+    /// Asks items in any order, any number of times, each at the price that it has within a batch.
+    #[must_use]
+    pub fn one_by_one(&self) -> OneByOne<'_, 'a> {
+        OneByOne { prepared: self, scratch: None }
     }
 
     fn run_items(
@@ -276,6 +281,32 @@ impl<'a> Prepared<'a> {
 /// What is wanted of a question that tells distances whether they are wanted or not.
 fn with_distance(context: &Context) -> Effects {
     effects_of(context.wants, context.margin).and(Effects::of(Effect::Distance))
+}
+
+impl OneByOne<'_, '_> {
+    /// The answer to an item; `None` where `stop` cut it short, because that is no answer.
+    pub fn answer(&mut self, item: usize, stop: &dyn Fn() -> bool) -> Option<ItemAnswer> {
+        if stop() {
+            return None;
+        }
+        let answer = self.look_at(item, stop);
+        (!stop()).then_some(answer)
+    }
+
+    fn look_at(&mut self, item: usize, stop: &dyn Fn() -> bool) -> ItemAnswer {
+        let number = self.prepared.asked.number(item);
+        match &self.prepared.questions[number] {
+            Question::States(states) => {
+                let (_, memory) = match self.scratch.take() {
+                    Some(of) if matches!(of, (world, _) if world == number) => self.scratch.insert(of),
+                    _ => self.scratch.insert((number, states.scratch())),
+                };
+                states.answer(item, memory, stop)
+            }
+            Question::Motions(motions) => motions.answer(item, stop),
+            Question::Pairs(pairs) => pairs.answer(item, stop),
+        }
+    }
 }
 
 impl Question<'_> {

@@ -2,6 +2,7 @@
 
 mod answer;
 mod batch;
+mod batch_question;
 mod cast_answer;
 mod cast_request;
 mod casts;
@@ -30,7 +31,8 @@ mod states;
 mod verdict;
 
 pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
-pub use batch::{Part, Prepared};
+pub use batch::{OneByOne, Part, Prepared};
+pub use batch_question::{BatchQuestion, Output};
 pub use cast_answer::{Answers, CastHit, CastItem, CastVerdict, Grazed, NearestItem, OverlapItem, Overlapping};
 pub use cast_request::{
     CastMode, CastRays, CastShapes, CheckMovingPairs, DEFAULT_RESOLUTION, Moved, Mover, NearestBodies, Overlap, Region,

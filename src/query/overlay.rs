@@ -276,6 +276,23 @@ impl Worlds {
         Ok(Self { worlds, of_item })
     }
 
+    /// Those of the chosen items alone, in their order.
+    #[must_use]
+    pub fn chosen(&self, items: &[usize]) -> Self {
+        if self.of_item.is_empty() {
+            return Self { worlds: vec![self.worlds[0].clone()], of_item: Vec::new() };
+        }
+        let mut numbers: Vec<usize> = items.iter().map(|item| self.number(*item)).chain([0]).collect();
+        let of_item: Vec<usize> = numbers[..items.len()].to_vec();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let renumbered = |number: usize| numbers.partition_point(|other| *other < number) as u32;
+        Self {
+            worlds: numbers.iter().map(|number| self.worlds[*number].clone()).collect(),
+            of_item: of_item.into_iter().map(renumbered).collect(),
+        }
+    }
+
     /// Every world, the common one first.
     #[must_use]
     pub fn all(&self) -> &[World] {

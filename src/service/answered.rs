@@ -1,5 +1,7 @@
 //! What was asked in a call, and what came out, in numbers: for whoever watches the daemon, not for the caller.
 
+use std::ops::AddAssign;
+
 use crate::narrow_phase::Cost;
 use crate::query::{Answer, Answers, CastItem, CastVerdict, Context, Indeterminacy, NearestItem, OverlapItem};
 use crate::query::{Verdict, Wants};
@@ -91,7 +93,7 @@ impl Verdicts {
         self.named().iter().map(|(_, _, count)| count).sum()
     }
 
-    fn count(&mut self, verdict: Verdict) {
+    pub(super) fn count(&mut self, verdict: Verdict) {
         *match verdict {
             Verdict::Free => &mut self.free,
             Verdict::Margin => &mut self.margin,
@@ -109,6 +111,20 @@ impl Verdicts {
             Indeterminacy::TimeLimit => &mut self.time_limit,
             Indeterminacy::Resolution => &mut self.resolution,
         }
+    }
+}
+
+impl AddAssign for Verdicts {
+    fn add_assign(&mut self, other: Self) {
+        self.free += other.free;
+        self.margin += other.margin;
+        self.collision += other.collision;
+        self.rounding += other.rounding;
+        self.iteration_limit += other.iteration_limit;
+        self.time_limit += other.time_limit;
+        self.resolution += other.resolution;
+        self.not_run += other.not_run;
+        self.invalid_input += other.invalid_input;
     }
 }
 

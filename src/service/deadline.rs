@@ -76,6 +76,12 @@ impl Stop {
         self.deadline
     }
 
+    /// The same for work that has to stop at `moment` already, if that comes first.
+    #[must_use]
+    pub fn not_after(&self, moment: Instant) -> Self {
+        Self { deadline: Deadline(self.deadline.0.min(moment)), abandoned: Arc::clone(&self.abandoned) }
+    }
+
     /// Whether to stop now.
     #[must_use]
     pub fn now(&self) -> bool {

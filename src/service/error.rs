@@ -126,6 +126,15 @@ impl ServiceError {
         Self::Invalid { field: field.into(), problem: problem.to_string() }
     }
 
+    /// The same error of a request that is a part of another one.
+    #[must_use]
+    pub fn within(mut self, part: &str) -> Self {
+        if let Self::Invalid { field, .. } | Self::EditRefused { field, .. } = &mut self {
+            *field = format!("{part}.{field}");
+        }
+        self
+    }
+
     /// Why the world of an overlay cannot be made; `number` says which overlay.
     #[must_use]
     pub fn of_overlay(error: NotSupposed, number: usize) -> Self {

@@ -22,7 +22,7 @@ use crate::limits::Limits;
 use crate::scene::{Applied, Edit, Epoch, Revision, Scene, SceneOptions, Snapshot};
 
 /// A change that is asked for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Change {
     /// Made in order, all or none.
     pub edits: Vec<Edit>,

@@ -25,13 +25,13 @@ use crate::scene::{Revision, Snapshot};
 pub struct View {
     found: Found,
     /// The snapshot as it is, or what is supposed on it.
-    worlds: Worlds,
-    stop: Stop,
-    limits: Limits,
+    pub(super) worlds: Worlds,
+    pub(super) stop: Stop,
+    pub(super) limits: Limits,
     /// Parts may be given to the threads that answer questions.
     many_threads: bool,
     /// Of the call that asks, if it is observed.
-    notes: Option<Arc<CallNotes>>,
+    pub(super) notes: Option<Arc<CallNotes>>,
 }
 
 /// Items that one thread takes at a time, at least: fewer cost more in handing over than they gain.

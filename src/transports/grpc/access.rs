@@ -61,6 +61,7 @@ const TABLE: &[(&str, &str, Need)] = &[
     ("clearance.v1.Queries", "CheckMotions", READ),
     ("clearance.v1.Queries", "CheckPath", READ),
     ("clearance.v1.Queries", "Clearance", READ),
+    ("clearance.v1.Queries", "Estimate", READ),
     ("clearance.v1.Queries", "QueryStream", READ),
     ("clearance.v1.Server", "GetServerInfo", READ),
     // Probes have no token.

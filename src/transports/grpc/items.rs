@@ -31,6 +31,7 @@ impl Items for v1::QueryStreamResponse {
             Some(Outcome::CheckMotions(answer)) => answer.items(),
             Some(Outcome::CheckPath(answer)) => answer.items(),
             Some(Outcome::Clearance(answer)) => answer.items(),
+            Some(Outcome::Estimate(estimated)) => estimated.items(),
         }
     }
 }
@@ -59,6 +60,7 @@ counted! {
     CheckMovingPairsResponse: |m| m.items.len();
     OverlapResponse: |m| m.items.len();
     NearestBodiesResponse: |m| m.items.len();
+    EstimateResponse: |m| usize::try_from(m.asked).unwrap_or(usize::MAX);
     ApplyRequest: |m| m.edits.len();
     PoseStreamResponse: |m| usize::try_from(m.poses).unwrap_or(usize::MAX);
 }
@@ -76,6 +78,6 @@ macro_rules! not_counted {
 
 not_counted! {
     CheckStatesRequest CollideRequest DistanceRequest CheckMotionsRequest CheckPathRequest ClearanceRequest CastRaysRequest
-    CastShapesRequest CheckMovingPairsRequest OverlapRequest NearestBodiesRequest ApplyResponse GetSceneRequest
+    CastShapesRequest CheckMovingPairsRequest OverlapRequest NearestBodiesRequest EstimateRequest ApplyResponse GetSceneRequest
     GetSceneResponse DescribeMeshRequest DescribeMeshResponse WatchResponse
 }

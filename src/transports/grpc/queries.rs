@@ -81,6 +81,10 @@ impl Queries for Handlers {
         self.answer(request, requests::clearance).await
     }
 
+    async fn estimate(&self, request: Request<v1::EstimateRequest>) -> Result<Response<v1::EstimateResponse>, Status> {
+        self.answer(request, requests::estimate).await
+    }
+
     async fn watch_contacts(
         &self,
         request: Request<v1::WatchContactsRequest>,

@@ -52,6 +52,7 @@ pub async fn call(
         "Queries/CheckMotions" => call.waiting(check_motions).await,
         "Queries/CheckPath" => call.waiting(check_path).await,
         "Queries/Clearance" => call.waiting(clearance).await,
+        "Queries/Estimate" => call.waiting(estimate).await,
         "Server/GetServerInfo" => call.at_once(|service, _: v1::GetServerInfoRequest| Ok(get_server_info(service))),
         _ => Err(ServiceError::invalid("rpc", format!("{rpc:?} is none that is answered with one message"))),
     }
@@ -124,7 +125,7 @@ mod tests {
             assert_eq!(unknown, streams_answers, "{rpc}: {outcome:?}");
             if unknown { not_found += 1 } else { found += 1 }
         }
-        assert_eq!((found, not_found), (24, 4));
+        assert_eq!((found, not_found), (25, 4));
     }
 
     #[tokio::test]

@@ -22,7 +22,7 @@ pub use call::call;
 pub use motions::{check_motions, check_path, clearance};
 pub use poses::{PoseMessages, pose_stream};
 pub use queries::{
-    cast_rays, cast_shapes, check_moving_pairs, check_states, collide, distance, nearest_bodies, overlap,
+    cast_rays, cast_shapes, check_moving_pairs, check_states, collide, distance, estimate, nearest_bodies, overlap,
     watch_contacts,
 };
 pub use query_stream::{QueryMessages, query_stream};

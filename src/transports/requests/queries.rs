@@ -140,6 +140,25 @@ pub async fn nearest_bodies(
     .await
 }
 
+/// The rpc `Estimate`.
+///
+/// # Errors
+/// As [`Service::ask`].
+pub async fn estimate(
+    service: &Arc<Service>,
+    message: v1::EstimateRequest,
+    timeout: Option<Duration>,
+) -> Result<v1::EstimateResponse, ServiceError> {
+    let (context, library) = (from_proto::context_of_estimate(&message).cloned(), Arc::clone(service.library()));
+    let measured = move |view: &View| {
+        let asked = from_proto::estimate(&message, view.worlds(), &library)?;
+        Ok(to_proto::estimate_response(&view.estimate(&asked)?))
+    };
+    // An estimate names its own fields; what is refused around it is wrong with the context, which is the question's.
+    let around = suppose(service, context, timeout, Effort::Any, move |view| Ok(measured(view)), |_, _| ());
+    around.await.map_err(|error| error.within("question"))?
+}
+
 /// The watch that is asked for; its steps become messages by [`to_proto::contact_messages`].
 ///
 /// # Errors

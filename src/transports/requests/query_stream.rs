@@ -12,7 +12,7 @@ use tokio_stream::{Stream, StreamExt};
 
 use super::{
     cast_rays, cast_shapes, check_motions, check_moving_pairs, check_path, check_states, clearance, collide, distance,
-    nearest_bodies, overlap, rpc_named,
+    estimate, nearest_bodies, overlap, rpc_named,
 };
 use crate::limits::LimitExceeded;
 use crate::service::{Asker, Call, Permit, Rpc, Service, ServiceError};
@@ -161,6 +161,7 @@ fn rpc_of(question: &Question) -> Option<Rpc> {
         Question::CheckMotions(_) => "Queries/CheckMotions",
         Question::CheckPath(_) => "Queries/CheckPath",
         Question::Clearance(_) => "Queries/Clearance",
+        Question::Estimate(_) => "Queries/Estimate",
     })
 }
 
@@ -185,6 +186,7 @@ async fn answer(
         }
         Some(Question::CheckMotions(asked)) => Ok(Outcome::CheckMotions(check_motions(service, asked, timeout).await?)),
         Some(Question::CheckPath(asked)) => Ok(Outcome::CheckPath(check_path(service, asked, timeout).await?)),
+        Some(Question::Estimate(asked)) => Ok(Outcome::Estimate(estimate(service, asked, timeout).await?)),
         Some(Question::Clearance(asked)) => Ok(Outcome::Clearance(clearance(service, asked, timeout).await?)),
     }
 }

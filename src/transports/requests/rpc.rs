@@ -38,6 +38,7 @@ const TABLE: &[(&str, Rpc)] = &[
     once("Queries", "CheckMotions"),
     once("Queries", "CheckPath"),
     once("Queries", "Clearance"),
+    once("Queries", "Estimate"),
     stream("Queries", "QueryStream"),
     once("Server", "GetServerInfo"),
 ];

@@ -5,6 +5,7 @@ mod answer;
 mod cast;
 mod cast_answer;
 mod contact;
+mod estimate;
 mod fields;
 mod geometry;
 mod motion;
@@ -21,6 +22,7 @@ pub use cast_answer::{
     cast_rays_answers, cast_shapes_answers, check_moving_pairs_answers, nearest_bodies_answers, overlap_answers,
 };
 pub use contact::contact_question;
+pub use estimate::{context_of_estimate, estimate, estimated};
 pub use geometry::{mesh_card_request, unusable_mesh};
 pub use motion::{check_motions, check_path, clearance, motions};
 pub use overlay::{has_overlays, no_overlays, overlays};

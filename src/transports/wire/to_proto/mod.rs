@@ -6,6 +6,7 @@ mod cast_question;
 mod contact;
 mod declared;
 mod error;
+mod estimate;
 mod geometry;
 mod health;
 mod mesh_card;
@@ -25,6 +26,7 @@ pub use cast_question::{
 };
 pub use contact::contact_messages;
 pub use error::{ErrorCard, query_error, reason_name};
+pub use estimate::{estimate_request, estimate_response};
 pub use geometry::{pose, shape};
 pub use health::scene_health;
 pub use mesh_card::mesh_card;
