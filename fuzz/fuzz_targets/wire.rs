@@ -30,7 +30,7 @@ fuzz_target!(|bytes: &[u8]| {
     let worlds = WORLDS.get_or_init(|| Worlds::as_is(snapshot));
     let Some((choice, message)) = bytes.split_first() else { return };
     let (library, robots) = (service.library(), service.robots());
-    match choice % 14 {
+    match choice % 16 {
         0 => read(message, |request: &v1::ApplyRequest| from_proto::change(request, library, robots)),
         1 => read(message, |request: &v1::LoadRobotRequest| from_proto::robot_description(request.clone())),
         2 => read(message, |answer: &v1::Answer| from_proto::answer(answer)),
@@ -46,6 +46,8 @@ fuzz_target!(|bytes: &[u8]| {
         }
         11 => read(message, |context: &v1::Context| from_proto::overlays(context, library, robots)),
         12 => read(message, |request: &v1::PoseStreamRequest| from_proto::poses(request)),
+        13 => read(message, |request: &v1::EstimateRequest| from_proto::estimate(request, worlds, library)),
+        14 => read(message, |response: &v1::EstimateResponse| from_proto::estimated(response)),
         _ => read(message, |request: &v1::WatchContactsRequest| {
             from_proto::contact_question(request, snapshot, &Limits::default())
         }),

@@ -170,6 +170,7 @@ impl Canonical for v1::QueryStreamResponse {
             Outcome::CheckMotions(it) => Outcome::CheckMotions(it.canonical()),
             Outcome::CheckPath(it) => Outcome::CheckPath(it.canonical()),
             Outcome::Clearance(it) => Outcome::Clearance(it.canonical()),
+            Outcome::Estimate(_) => unreachable!("times have no canonical form"),
             Outcome::Error(it) => Outcome::Error(it),
         });
         self

@@ -199,6 +199,22 @@ async fn a_client_beyond_its_rate_is_told_when_to_come_back_and_others_are_not()
     ask("greedy", 1).await.unwrap();
 }
 
+/// An estimate is charged with all that it asked.
+#[tokio::test(flavor = "multi_thread")]
+async fn an_estimate_is_taken_off_the_clients_share() {
+    let limits = Limits { max_client_items_per_second: 50, max_estimate_seconds: 60, ..Limits::default() };
+    let grpc = Grpc::open(limits).await;
+    grpc.create_scene(SCENE).await.unwrap();
+    grpc.apply(apply(vec![add("1", sphere(0.1), at(0.0, 0.0, 0.0))])).await.unwrap();
+    let asked = distance(vec![body(named("1")); 20]);
+    let question = Some(v1::estimate_request::Question::Distance(asked));
+    let request = v1::EstimateRequest { question, tolerances: vec![1e-3], ..v1::EstimateRequest::default() };
+    let told = watched("an estimate", grpc.estimate(request.clone())).await.unwrap();
+    assert_eq!(told.asked, 3 * 20 * 6 + 5);
+    let refusal = watched("a refusal", grpc.estimate(request)).await.unwrap_err();
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::ResourceExhausted, "LIMIT_EXCEEDED"), "{refusal:?}");
+}
+
 /// A message larger than what a second allows is read no faster than the rate; the next call is refused meanwhile.
 #[tokio::test(flavor = "multi_thread")]
 async fn bytes_come_no_faster_than_the_clients_rate() {

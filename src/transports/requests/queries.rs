@@ -146,10 +146,12 @@ pub async fn nearest_bodies(
 /// As [`Service::ask`].
 pub async fn estimate(
     service: &Arc<Service>,
-    message: v1::EstimateRequest,
+    mut message: v1::EstimateRequest,
     timeout: Option<Duration>,
 ) -> Result<v1::EstimateResponse, ServiceError> {
-    let (context, library) = (from_proto::context_of_estimate(&message).cloned(), Arc::clone(service.library()));
+    let asked = message.question.as_mut().ok_or_else(|| ServiceError::invalid("question", "is missing"))?;
+    let context = from_proto::context_of(asked).clone();
+    let library = Arc::clone(service.library());
     let measured = move |view: &View| {
         let asked = from_proto::estimate(&message, view.worlds(), &library)?;
         Ok(to_proto::estimate_response(&view.estimate(&asked)?))

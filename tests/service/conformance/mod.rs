@@ -8,6 +8,7 @@ mod casts;
 mod contacts;
 mod decompositions;
 mod effects;
+mod estimates;
 mod fields;
 mod motions;
 mod overlays;

@@ -20,7 +20,7 @@ through_doors_with_streams!(
 );
 
 fn limits() -> Limits {
-    Limits { max_stream_in_flight: 8, max_items: 100, ..Limits::default() }
+    Limits { max_stream_in_flight: 8, max_items: 200, max_estimate_seconds: 60, ..Limits::default() }
 }
 
 async fn scene(door: &impl Streams) {
@@ -90,6 +90,7 @@ async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Streams) 
     let path = v1::CheckPathRequest { context: context.clone(), robot, waypoints: q(), ..Default::default() };
     let near = v1::clearance_request::Subjects::Items(v1::ClearanceSubjects { items: vec![body(named("2"))] });
     let clearance = v1::ClearanceRequest { context, within: 0.5, subjects: Some(near), ..Default::default() };
+    let of_states = states.clone();
     let questions = vec![
         asked(11, Question::CheckStates(states.clone())),
         asked(12, Question::Collide(collide.clone())),
@@ -120,6 +121,12 @@ async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Streams) 
         Outcome::Clearance(v1::ClearanceResponse { answer: answer(door.clearance(clearance).await.unwrap()) }),
     ];
     assert_eq!(answers, (11..).zip(called).collect());
+    // An estimate is a question, too, but measures anew each time.
+    let question = v1::estimate_request::Question::CheckStates(of_states);
+    let estimate = v1::EstimateRequest { question: Some(question), sample: Some(1), ..Default::default() };
+    let estimated = ask(door, vec![asked(22, Question::Estimate(estimate))]).await.remove(0);
+    let Some(Outcome::Estimate(estimated)) = estimated.outcome else { panic!("{estimated:?}") };
+    assert_eq!((estimated.end(), estimated.sample), (v1::EstimateEnd::Complete, 1));
 }
 
 async fn answers_come_in_order_where_asked(door: &impl Streams) {

@@ -105,4 +105,8 @@ impl<N: ByName> Door for N {
     async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
         Ok(self.call::<v1::ClearanceResponse>("Queries/Clearance", &request).await?.answer.unwrap())
     }
+
+    async fn estimate(&self, request: v1::EstimateRequest) -> Told<v1::EstimateResponse> {
+        self.call("Queries/Estimate", &request).await
+    }
 }

@@ -90,6 +90,7 @@ pub trait Door {
     async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse>;
     async fn check_path(&self, request: v1::CheckPathRequest) -> Told<v1::CheckPathResponse>;
     async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer>;
+    async fn estimate(&self, request: v1::EstimateRequest) -> Told<v1::EstimateResponse>;
 
     /// A scene with the default options.
     async fn create_scene(&self, name: &str) -> Told<v1::SceneSummary> {
@@ -180,6 +181,10 @@ impl Door for InProcess {
 
     async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
         Ok(requests::clearance(&self.service, request, None).await?.answer.unwrap())
+    }
+
+    async fn estimate(&self, request: v1::EstimateRequest) -> Told<v1::EstimateResponse> {
+        Ok(requests::estimate(&self.service, request, None).await?)
     }
 
     async fn check_motions(&self, request: v1::CheckMotionsRequest) -> Told<v1::CheckMotionsResponse> {
@@ -389,6 +394,10 @@ impl<W: Way> Door for Http2<W> {
 
     async fn clearance(&self, request: v1::ClearanceRequest) -> Told<v1::Answer> {
         Ok(QueriesClient::new(self.channel.clone()).clearance(request).await?.into_inner().answer.unwrap())
+    }
+
+    async fn estimate(&self, request: v1::EstimateRequest) -> Told<v1::EstimateResponse> {
+        Ok(QueriesClient::new(self.channel.clone()).estimate(request).await?.into_inner())
     }
 
     async fn cast_rays(&self, request: v1::CastRaysRequest) -> Told<v1::CastRaysResponse> {

@@ -7,7 +7,7 @@ use crate::query::{
     Answer, Answers, CastItem, CastRays, CastShapes, CheckMotions, CheckMovingPairs, CheckStates, Clearance, Motions,
     NearestBodies, NearestItem, Overlap, OverlapItem, PairQuery,
 };
-use crate::service::Target;
+use crate::service::{Estimate, Estimated, Target};
 use crate::transports::wire::{from_proto, to_proto, v1};
 
 impl Client {
@@ -67,6 +67,19 @@ impl Client {
         let mut request = to_proto::clearance_request(target, question);
         request.context = self.seen(request.context);
         plain(self.queries().clearance(request).await?.into_inner().answer)
+    }
+
+    /// What would a question cost, for each output at each tolerance?
+    ///
+    /// # Errors
+    /// [`ClientError`].
+    pub async fn estimate(&self, target: &Target, estimate: &Estimate) -> Result<Estimated, ClientError> {
+        let mut request = to_proto::estimate_request(target, estimate);
+        if let Some(question) = &mut request.question {
+            let context = from_proto::context_of(question);
+            *context = self.seen(context.take());
+        }
+        Ok(from_proto::estimated(&self.queries().estimate(request).await?.into_inner())?)
     }
 
     /// What touches?

@@ -15,15 +15,14 @@ use crate::transports::wire::v1;
 use crate::transports::wire::v1::estimate_request::Question;
 
 /// The context of the question whose price is asked for.
-#[must_use]
-pub fn context_of_estimate(request: &v1::EstimateRequest) -> Option<&v1::Context> {
-    match request.question.as_ref()? {
-        Question::CheckStates(asked) => asked.context.as_ref(),
-        Question::Collide(asked) => asked.context.as_ref(),
-        Question::Distance(asked) => asked.context.as_ref(),
-        Question::CheckMotions(asked) => asked.context.as_ref(),
-        Question::CheckPath(asked) => asked.context.as_ref(),
-        Question::Clearance(asked) => asked.context.as_ref(),
+pub fn context_of(question: &mut Question) -> &mut Option<v1::Context> {
+    match question {
+        Question::CheckStates(asked) => &mut asked.context,
+        Question::Collide(asked) => &mut asked.context,
+        Question::Distance(asked) => &mut asked.context,
+        Question::CheckMotions(asked) => &mut asked.context,
+        Question::CheckPath(asked) => &mut asked.context,
+        Question::Clearance(asked) => &mut asked.context,
     }
 }
 

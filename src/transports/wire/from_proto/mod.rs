@@ -22,7 +22,7 @@ pub use cast_answer::{
     cast_rays_answers, cast_shapes_answers, check_moving_pairs_answers, nearest_bodies_answers, overlap_answers,
 };
 pub use contact::contact_question;
-pub use estimate::{context_of_estimate, estimate, estimated};
+pub use estimate::{context_of, estimate, estimated};
 pub use geometry::{mesh_card_request, unusable_mesh};
 pub use motion::{check_motions, check_path, clearance, motions};
 pub use overlay::{has_overlays, no_overlays, overlays};
