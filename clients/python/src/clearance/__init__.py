@@ -52,6 +52,7 @@ from .errors import (
     RevisionGone,
     Unavailable,
 )
+from .estimates import Estimate, EstimateEnd, Estimator, Price
 from .motions import MotionsAnswer, along
 from .overlays import WhatIf, attach, overlay
 from .poses import pose, pose_from_matrix, random_pose
@@ -96,6 +97,9 @@ __all__ = [
     "ContactWatch",
     "Cost",
     "DeadlineExceeded",
+    "Estimate",
+    "EstimateEnd",
+    "Estimator",
     "Grazed",
     "InvalidRequest",
     "ItemAnswer",
@@ -111,6 +115,7 @@ __all__ = [
     "PairAnswer",
     "PoseStream",
     "PosesMade",
+    "Price",
     "RaysAnswer",
     "RevisionGone",
     "Robot",

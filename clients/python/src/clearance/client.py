@@ -17,6 +17,7 @@ from .edits import BodyName, body_ref
 from . import motions as motion_messages
 from .channels import open_channel, open_zenoh
 from .errors import refused, translated
+from .estimates import Estimator
 from .motions import MotionsAnswer
 from .overlays import WhatIf
 from .poses import Vector, vec3
@@ -335,13 +336,9 @@ class Scene:
         that collides is left as soon as a contact is met, and its bracket is wide. `resolution` is how little a pair may
         move, in metres, before what is not proved is left undecided; `max_states` how many states a motion is looked at in.
         """
-        request = motion.CheckMotionsRequest(
-            context=self._context("verdict", margin, None, "default", at_least, what_if),
-            robot=robot,
-            positions=motion_messages.edges(starts, goals),
-            mode=motion_messages.mode(stop_at_first),
-            effort=motion_messages.effort(first_contact, resolution, max_states),
-        )
+        context = self._context("verdict", margin, None, "default", at_least, what_if)
+        request = self._motions_request(context, robot, starts, goals, first_contact, resolution, max_states)
+        request.mode = motion_messages.mode(stop_at_first)
         request.context.answer_form = query.ANSWER_FORM_BULK
         with translated():
             response = self._client._queries.CheckMotions(request, timeout=timeout or self._client._timeout)
@@ -368,13 +365,9 @@ class Scene:
         `waypoints` has shape (n + 1, degrees of freedom); the answer has n elements, and `stopped_at` is the first that is
         blocked.
         """
-        request = motion.CheckPathRequest(
-            context=self._context("verdict", margin, None, "default", at_least, what_if),
-            robot=robot,
-            waypoints=motion_messages.doubles(waypoints, "waypoints", "(n, degrees of freedom)", 2),
-            mode=motion_messages.mode(stop_at_first),
-            effort=motion_messages.effort(first_contact, resolution, max_states),
-        )
+        context = self._context("verdict", margin, None, "default", at_least, what_if)
+        request = self._path_request(context, robot, waypoints, first_contact, resolution, max_states)
+        request.mode = motion_messages.mode(stop_at_first)
         request.context.answer_form = query.ANSWER_FORM_BULK
         with translated():
             response = self._client._queries.CheckPath(request, timeout=timeout or self._client._timeout)
@@ -399,7 +392,7 @@ class Scene:
         Without subjects: which pairs of all bodies are that near.
         """
         request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if)
-        request.items.items.extend(_subjects(subjects))
+        request.items.items.extend(self._subjects(subjects))
         return self._clearance(request, timeout)
 
     def clearance_of_states(
@@ -452,7 +445,7 @@ class Scene:
     ) -> ItemAnswers:
         """How far is the nearest body from each subject? Without subjects: the nearest pair of all bodies."""
         context = self._context(want, margin, cut_off, solver, at_least, what_if)
-        request = query.DistanceRequest(context=context, items=_subjects(subjects))
+        request = query.DistanceRequest(context=context, items=self._subjects(subjects))
         with translated():
             answer = self._client._queries.Distance(request, timeout=timeout or self._client._timeout).answer
         return ItemAnswers.of(answer)
@@ -469,10 +462,29 @@ class Scene:
     ) -> ItemAnswers:
         """Which bodies does each subject touch? Without subjects: which pairs of all bodies touch."""
         context = self._context(want, margin, None, solver, at_least, what_if)
-        request = query.CollideRequest(context=context, items=_subjects(subjects))
+        request = query.CollideRequest(context=context, items=self._subjects(subjects))
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
         return ItemAnswers.of(answer)
+
+    def estimate(
+        self,
+        *,
+        tolerances: Sequence[float] = (),
+        outputs: Sequence[str] = (),
+        sample: Optional[int] = None,
+        time: Optional[float] = None,
+        timeout: Optional[float] = None,
+    ) -> Estimator:
+        """What would a question cost? The same question, asked of what this returns, is measured for each output at each tolerance.
+
+            for price in scene.estimate(tolerances=[1e-3, 1e-6]).distance("ball"): print(price)
+
+        `tolerances`: metres; by default a ladder down to the floor of rounding. `outputs`: `verdict`, `pairs`, `distance`, `witness`,
+        `depth`, `patch`; by default all that the question has and the scene's declared effects permit. `sample` items at most are
+        measured for `time` seconds at most; the daemon caps both.
+        """
+        return Estimator(self, tolerances, outputs, sample, time, timeout)
 
     def cast_rays(
         self,
@@ -564,7 +576,7 @@ class Scene:
         if not subjects:
             raise ValueError("subjects: needs at least one body or shape")
         context = self._cast_context(want, margin, cut_off, ignore, None, at_least)
-        request = cast.NearestBodiesRequest(context=context, items=_subjects(subjects), count=count)
+        request = cast.NearestBodiesRequest(context=context, items=self._subjects(subjects), count=count)
         with translated():
             answer = self._client._queries.NearestBodies(request, timeout=timeout or self._client._timeout)
         return [NearestItem.of(item) for item in answer.items]
@@ -735,6 +747,54 @@ class Scene:
             what_if.put_into(context)
         return context
 
+    @staticmethod
+    def _subjects(subjects: Sequence[Subject]) -> list[query.Subject]:
+        if not subjects:
+            return [query.Subject(all_pairs=query.AllPairs())]
+        messages = []
+        for subject in subjects:
+            if isinstance(subject, query.Subject):
+                messages.append(subject)
+            elif isinstance(subject, tuple):
+                shape, pose = subject
+                messages.append(query.Subject(shape=query.PlacedShape(shape=shape, pose=pose or make_pose())))
+            else:
+                messages.append(query.Subject(body=body_ref(subject)))
+        return messages
+
+    def _motions_request(
+        self,
+        context: query.Context,
+        robot: str,
+        starts: ArrayLike,
+        goals: ArrayLike,
+        first_contact: bool,
+        resolution: Optional[float],
+        max_states: Optional[int],
+    ) -> motion.CheckMotionsRequest:
+        return motion.CheckMotionsRequest(
+            context=context,
+            robot=robot,
+            positions=motion_messages.edges(starts, goals),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+
+    def _path_request(
+        self,
+        context: query.Context,
+        robot: str,
+        waypoints: ArrayLike,
+        first_contact: bool,
+        resolution: Optional[float],
+        max_states: Optional[int],
+    ) -> motion.CheckPathRequest:
+        return motion.CheckPathRequest(
+            context=context,
+            robot=robot,
+            waypoints=motion_messages.doubles(waypoints, "waypoints", "(n, degrees of freedom)", 2),
+            effort=motion_messages.effort(first_contact, resolution, max_states),
+        )
+
     def _states_request(
         self, context: query.Context, robot: str, positions: ArrayLike, stop_at_first: bool
     ) -> query.CheckStatesRequest:
@@ -783,21 +843,6 @@ def _solver(name: str) -> query.Solver:
     if name not in known:
         raise ValueError(f"solver: is {name!r}, known are {', '.join(known)}")
     return known[name]
-
-
-def _subjects(subjects: Sequence[Subject]) -> list[query.Subject]:
-    if not subjects:
-        return [query.Subject(all_pairs=query.AllPairs())]
-    messages = []
-    for subject in subjects:
-        if isinstance(subject, query.Subject):
-            messages.append(subject)
-        elif isinstance(subject, tuple):
-            shape, pose = subject
-            messages.append(query.Subject(shape=query.PlacedShape(shape=shape, pose=pose or make_pose())))
-        else:
-            messages.append(query.Subject(body=body_ref(subject)))
-    return messages
 
 
 def _upload(data: bytes, sha256: str) -> Iterator[service.PutAssetRequest]:

@@ -22,18 +22,19 @@ _runtime_version.ValidateProtobufRuntimeVersion(
 _sym_db = _symbol_database.Default()
 
 
-from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
 from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
 from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
-from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
+from clearance.v1 import estimate_pb2 as clearance_dot_v1_dot_estimate__pb2
 from clearance.v1 import geometry_pb2 as clearance_dot_v1_dot_geometry__pb2
+from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
+from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
 from clearance.v1 import robot_pb2 as clearance_dot_v1_dot_robot__pb2
 from clearance.v1 import scene_pb2 as clearance_dot_v1_dot_scene__pb2
 from clearance.v1 import stream_pb2 as clearance_dot_v1_dot_stream__pb2
 
 
-DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x19\x63learance/v1/health.proto\x1a\x17\x63learance/v1/cast.proto\x1a\x1a\x63learance/v1/contact.proto\x1a\x19\x63learance/v1/motion.proto\x1a\x1b\x63learance/v1/geometry.proto\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\x1a\x19\x63learance/v1/stream.proto\"Q\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12-\n\x0b\x62road_phase\x18\x02 \x01(\x0e\x32\x18.clearance.v1.BroadPhase\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x8a\x01\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\x12\x17\n\nmax_bodies\x18\x03 \x01(\rH\x00\x88\x01\x01\x12\x12\n\nafter_body\x18\x04 \x01(\x04\x42\r\n\x0b_max_bodies\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"`\n\x13\x44\x65scribeMeshRequest\x12%\n\x04mesh\x18\x01 \x01(\x0b\x32\x17.clearance.v1.MeshAsset\x12\x15\n\x08\x61\x63\x63uracy\x18\x02 \x01(\x01H\x00\x88\x01\x01\x42\x0b\n\t_accuracy\"<\n\x14\x44\x65scribeMeshResponse\x12$\n\x04\x63\x61rd\x18\x01 \x01(\x0b\x32\x16.clearance.v1.MeshCard\"\xaf\x01\n\x08MeshCard\x12\x0e\n\x06pieces\x18\x01 \x01(\r\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x15\n\rbuild_seconds\x18\x03 \x01(\x01\x12(\n\tinflation\x18\x04 \x01(\x0b\x32\x15.clearance.v1.Bracket\x12#\n\x04loss\x18\x05 \x01(\x0b\x32\x15.clearance.v1.Bracket\x12\x0e\n\x06\x63losed\x18\x06 \x01(\x08\x12\x0e\n\x06points\x18\x07 \x01(\x04\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\xc6\x05\n\x12QueryStreamRequest\x12\n\n\x02id\x18\x01 \x01(\x04\x12\x33\n\x07options\x18\x02 \x01(\x0b\x32 .clearance.v1.QueryStreamOptionsH\x00\x12\x38\n\x0c\x63heck_states\x18\x03 \x01(\x0b\x32 .clearance.v1.CheckStatesRequestH\x00\x12/\n\x07\x63ollide\x18\x04 \x01(\x0b\x32\x1c.clearance.v1.CollideRequestH\x00\x12\x31\n\x08\x64istance\x18\x05 \x01(\x0b\x32\x1d.clearance.v1.DistanceRequestH\x00\x12\x32\n\tcast_rays\x18\x06 \x01(\x0b\x32\x1d.clearance.v1.CastRaysRequestH\x00\x12\x36\n\x0b\x63\x61st_shapes\x18\x07 \x01(\x0b\x32\x1f.clearance.v1.CastShapesRequestH\x00\x12\x43\n\x12\x63heck_moving_pairs\x18\x08 \x01(\x0b\x32%.clearance.v1.CheckMovingPairsRequestH\x00\x12/\n\x07overlap\x18\t \x01(\x0b\x32\x1c.clearance.v1.OverlapRequestH\x00\x12<\n\x0enearest_bodies\x18\n \x01(\x0b\x32\".clearance.v1.NearestBodiesRequestH\x00\x12:\n\rcheck_motions\x18\x0b \x01(\x0b\x32!.clearance.v1.CheckMotionsRequestH\x00\x12\x34\n\ncheck_path\x18\x0c \x01(\x0b\x32\x1e.clearance.v1.CheckPathRequestH\x00\x12\x33\n\tclearance\x18\r \x01(\x0b\x32\x1e.clearance.v1.ClearanceRequestH\x00\x42\n\n\x08question\"=\n\x12QueryStreamOptions\x12\x10\n\x08in_order\x18\x01 \x01(\x08\x12\x15\n\rmax_in_flight\x18\x02 \x01(\r\"\xc7\x05\n\x13QueryStreamResponse\x12\n\n\x02id\x18\x01 \x01(\x04\x12)\n\x05\x65rror\x18\x02 \x01(\x0b\x32\x18.clearance.v1.QueryErrorH\x00\x12\x39\n\x0c\x63heck_states\x18\x03 \x01(\x0b\x32!.clearance.v1.CheckStatesResponseH\x00\x12\x30\n\x07\x63ollide\x18\x04 \x01(\x0b\x32\x1d.clearance.v1.CollideResponseH\x00\x12\x32\n\x08\x64istance\x18\x05 \x01(\x0b\x32\x1e.clearance.v1.DistanceResponseH\x00\x12\x33\n\tcast_rays\x18\x06 \x01(\x0b\x32\x1e.clearance.v1.CastRaysResponseH\x00\x12\x37\n\x0b\x63\x61st_shapes\x18\x07 \x01(\x0b\x32 .clearance.v1.CastShapesResponseH\x00\x12\x44\n\x12\x63heck_moving_pairs\x18\x08 \x01(\x0b\x32&.clearance.v1.CheckMovingPairsResponseH\x00\x12\x30\n\x07overlap\x18\t \x01(\x0b\x32\x1d.clearance.v1.OverlapResponseH\x00\x12=\n\x0enearest_bodies\x18\n \x01(\x0b\x32#.clearance.v1.NearestBodiesResponseH\x00\x12;\n\rcheck_motions\x18\x0b \x01(\x0b\x32\".clearance.v1.CheckMotionsResponseH\x00\x12\x35\n\ncheck_path\x18\x0c \x01(\x0b\x32\x1f.clearance.v1.CheckPathResponseH\x00\x12\x34\n\tclearance\x18\r \x01(\x0b\x32\x1f.clearance.v1.ClearanceResponseH\x00\x42\t\n\x07outcome\"\xbe\x01\n\nQueryError\x12\x0c\n\x04\x63ode\x18\x01 \x01(\x05\x12)\n\x06reason\x18\x02 \x01(\x0e\x32\x19.clearance.v1.ErrorReason\x12\x0f\n\x07message\x18\x03 \x01(\t\x12\x36\n\x07\x64\x65tails\x18\x04 \x03(\x0b\x32%.clearance.v1.QueryError.DetailsEntry\x1a.\n\x0c\x44\x65tailsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t:\x02\x38\x01\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\x8d\x05\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x12\x19\n\x15\x45RROR_REASON_NO_TOKEN\x10\x0f\x12\x1e\n\x1a\x45RROR_REASON_UNKNOWN_TOKEN\x10\x10\x12\x1e\n\x1a\x45RROR_REASON_MISSING_SCOPE\x10\x11\x12$\n ERROR_REASON_EFFECT_NOT_DECLARED\x10\x13\x12!\n\x1d\x45RROR_REASON_EFFECT_NOT_BUILT\x10\x12\x32\x84\x05\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12[\n\x0eGetSceneHealth\x12#.clearance.v1.GetSceneHealthRequest\x1a$.clearance.v1.GetSceneHealthResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse\x12\x42\n\x05Watch\x12\x1a.clearance.v1.WatchRequest\x1a\x1b.clearance.v1.WatchResponse0\x01\x12S\n\nPoseStream\x12\x1f.clearance.v1.PoseStreamRequest\x1a .clearance.v1.PoseStreamResponse(\x01\x30\x01\x32\xfa\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x12U\n\x0c\x44\x65scribeMesh\x12!.clearance.v1.DescribeMeshRequest\x1a\".clearance.v1.DescribeMeshResponse2\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\xb8\x08\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse\x12I\n\x08\x43\x61stRays\x12\x1d.clearance.v1.CastRaysRequest\x1a\x1e.clearance.v1.CastRaysResponse\x12O\n\nCastShapes\x12\x1f.clearance.v1.CastShapesRequest\x1a .clearance.v1.CastShapesResponse\x12\x61\n\x10\x43heckMovingPairs\x12%.clearance.v1.CheckMovingPairsRequest\x1a&.clearance.v1.CheckMovingPairsResponse\x12\x46\n\x07Overlap\x12\x1c.clearance.v1.OverlapRequest\x1a\x1d.clearance.v1.OverlapResponse\x12X\n\rNearestBodies\x12\".clearance.v1.NearestBodiesRequest\x1a#.clearance.v1.NearestBodiesResponse\x12Z\n\rWatchContacts\x12\".clearance.v1.WatchContactsRequest\x1a#.clearance.v1.WatchContactsResponse0\x01\x12U\n\x0c\x43heckMotions\x12!.clearance.v1.CheckMotionsRequest\x1a\".clearance.v1.CheckMotionsResponse\x12L\n\tCheckPath\x12\x1e.clearance.v1.CheckPathRequest\x1a\x1f.clearance.v1.CheckPathResponse\x12L\n\tClearance\x12\x1e.clearance.v1.ClearanceRequest\x1a\x1f.clearance.v1.ClearanceResponse\x12V\n\x0bQueryStream\x12 .clearance.v1.QueryStreamRequest\x1a!.clearance.v1.QueryStreamResponse(\x01\x30\x01\x32\x62\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
+DESCRIPTOR = _descriptor_pool.Default().AddSerializedFile(b'\n\x1a\x63learance/v1/service.proto\x12\x0c\x63learance.v1\x1a\x17\x63learance/v1/cast.proto\x1a\x1a\x63learance/v1/contact.proto\x1a\x1b\x63learance/v1/estimate.proto\x1a\x1b\x63learance/v1/geometry.proto\x1a\x19\x63learance/v1/health.proto\x1a\x19\x63learance/v1/motion.proto\x1a\x18\x63learance/v1/query.proto\x1a\x18\x63learance/v1/robot.proto\x1a\x18\x63learance/v1/scene.proto\x1a\x19\x63learance/v1/stream.proto\"Q\n\x12\x43reateSceneRequest\x12\x0c\n\x04name\x18\x01 \x01(\t\x12-\n\x0b\x62road_phase\x18\x02 \x01(\x0e\x32\x18.clearance.v1.BroadPhase\"@\n\x13\x43reateSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x13\n\x11ListScenesRequest\"@\n\x12ListScenesResponse\x12*\n\x06scenes\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\"\x8a\x01\n\x0fGetSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12,\n\x08revision\x18\x02 \x01(\x0b\x32\x1a.clearance.v1.RevisionRule\x12\x17\n\nmax_bodies\x18\x03 \x01(\rH\x00\x88\x01\x01\x12\x12\n\nafter_body\x18\x04 \x01(\x04\x42\r\n\x0b_max_bodies\">\n\x10GetSceneResponse\x12*\n\x05scene\x18\x01 \x01(\x0b\x32\x1b.clearance.v1.SceneContents\"#\n\x12\x44\x65leteSceneRequest\x12\r\n\x05scene\x18\x01 \x01(\t\"@\n\x13\x44\x65leteSceneResponse\x12)\n\x05scene\x18\x01 \x01(\x0b\x32\x1a.clearance.v1.SceneSummary\"\xbf\x01\n\x0c\x41pplyRequest\x12\r\n\x05scene\x18\x01 \x01(\t\x12!\n\x05\x65\x64its\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Edit\x12\x1b\n\x0e\x65xpected_epoch\x18\x03 \x01(\x04H\x00\x88\x01\x01\x12\x1e\n\x11\x65xpected_revision\x18\x04 \x01(\x04H\x01\x88\x01\x01\x12\x17\n\x0fidempotency_key\x18\x05 \x01(\tB\x11\n\x0f_expected_epochB\x14\n\x12_expected_revision\"?\n\rApplyResponse\x12\r\n\x05\x65poch\x18\x01 \x01(\x04\x12\x10\n\x08revision\x18\x02 \x01(\x04\x12\r\n\x05\x61\x64\x64\x65\x64\x18\x03 \x03(\x04\"\"\n\x10HasAssetsRequest\x12\x0e\n\x06sha256\x18\x01 \x03(\t\"$\n\x11HasAssetsResponse\x12\x0f\n\x07present\x18\x01 \x03(\x08\"W\n\x0fPutAssetRequest\x12+\n\x06header\x18\x01 \x01(\x0b\x32\x19.clearance.v1.AssetHeaderH\x00\x12\x0f\n\x05\x63hunk\x18\x02 \x01(\x0cH\x00\x42\x06\n\x04part\",\n\x0b\x41ssetHeader\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\"J\n\x10PutAssetResponse\x12\x0e\n\x06sha256\x18\x01 \x01(\t\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x17\n\x0f\x61lready_present\x18\x03 \x01(\x08\"`\n\x13\x44\x65scribeMeshRequest\x12%\n\x04mesh\x18\x01 \x01(\x0b\x32\x17.clearance.v1.MeshAsset\x12\x15\n\x08\x61\x63\x63uracy\x18\x02 \x01(\x01H\x00\x88\x01\x01\x42\x0b\n\t_accuracy\"<\n\x14\x44\x65scribeMeshResponse\x12$\n\x04\x63\x61rd\x18\x01 \x01(\x0b\x32\x16.clearance.v1.MeshCard\"\xaf\x01\n\x08MeshCard\x12\x0e\n\x06pieces\x18\x01 \x01(\r\x12\r\n\x05\x62ytes\x18\x02 \x01(\x04\x12\x15\n\rbuild_seconds\x18\x03 \x01(\x01\x12(\n\tinflation\x18\x04 \x01(\x0b\x32\x15.clearance.v1.Bracket\x12#\n\x04loss\x18\x05 \x01(\x0b\x32\x15.clearance.v1.Bracket\x12\x0e\n\x06\x63losed\x18\x06 \x01(\x08\x12\x0e\n\x06points\x18\x07 \x01(\x04\"<\n\x11LoadRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\"\x13\n\x11ListRobotsRequest\"@\n\x12ListRobotsResponse\x12*\n\x06robots\x18\x01 \x03(\x0b\x32\x1a.clearance.v1.RobotSummary\"(\n\x0cRobotSummary\x12\n\n\x02id\x18\x01 \x01(\t\x12\x0c\n\x04name\x18\x02 \x01(\t\"\x1d\n\x0fGetRobotRequest\x12\n\n\x02id\x18\x01 \x01(\t\";\n\x10GetRobotResponse\x12\'\n\x05robot\x18\x01 \x01(\x0b\x32\x18.clearance.v1.RobotModel\";\n\x13\x43heckStatesResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"7\n\x0f\x43ollideResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"8\n\x10\x44istanceResponse\x12$\n\x06\x61nswer\x18\x01 \x01(\x0b\x32\x14.clearance.v1.Answer\"\xf9\x05\n\x12QueryStreamRequest\x12\n\n\x02id\x18\x01 \x01(\x04\x12\x33\n\x07options\x18\x02 \x01(\x0b\x32 .clearance.v1.QueryStreamOptionsH\x00\x12\x38\n\x0c\x63heck_states\x18\x03 \x01(\x0b\x32 .clearance.v1.CheckStatesRequestH\x00\x12/\n\x07\x63ollide\x18\x04 \x01(\x0b\x32\x1c.clearance.v1.CollideRequestH\x00\x12\x31\n\x08\x64istance\x18\x05 \x01(\x0b\x32\x1d.clearance.v1.DistanceRequestH\x00\x12\x32\n\tcast_rays\x18\x06 \x01(\x0b\x32\x1d.clearance.v1.CastRaysRequestH\x00\x12\x36\n\x0b\x63\x61st_shapes\x18\x07 \x01(\x0b\x32\x1f.clearance.v1.CastShapesRequestH\x00\x12\x43\n\x12\x63heck_moving_pairs\x18\x08 \x01(\x0b\x32%.clearance.v1.CheckMovingPairsRequestH\x00\x12/\n\x07overlap\x18\t \x01(\x0b\x32\x1c.clearance.v1.OverlapRequestH\x00\x12<\n\x0enearest_bodies\x18\n \x01(\x0b\x32\".clearance.v1.NearestBodiesRequestH\x00\x12:\n\rcheck_motions\x18\x0b \x01(\x0b\x32!.clearance.v1.CheckMotionsRequestH\x00\x12\x34\n\ncheck_path\x18\x0c \x01(\x0b\x32\x1e.clearance.v1.CheckPathRequestH\x00\x12\x33\n\tclearance\x18\r \x01(\x0b\x32\x1e.clearance.v1.ClearanceRequestH\x00\x12\x31\n\x08\x65stimate\x18\x0e \x01(\x0b\x32\x1d.clearance.v1.EstimateRequestH\x00\x42\n\n\x08question\"=\n\x12QueryStreamOptions\x12\x10\n\x08in_order\x18\x01 \x01(\x08\x12\x15\n\rmax_in_flight\x18\x02 \x01(\r\"\xfb\x05\n\x13QueryStreamResponse\x12\n\n\x02id\x18\x01 \x01(\x04\x12)\n\x05\x65rror\x18\x02 \x01(\x0b\x32\x18.clearance.v1.QueryErrorH\x00\x12\x39\n\x0c\x63heck_states\x18\x03 \x01(\x0b\x32!.clearance.v1.CheckStatesResponseH\x00\x12\x30\n\x07\x63ollide\x18\x04 \x01(\x0b\x32\x1d.clearance.v1.CollideResponseH\x00\x12\x32\n\x08\x64istance\x18\x05 \x01(\x0b\x32\x1e.clearance.v1.DistanceResponseH\x00\x12\x33\n\tcast_rays\x18\x06 \x01(\x0b\x32\x1e.clearance.v1.CastRaysResponseH\x00\x12\x37\n\x0b\x63\x61st_shapes\x18\x07 \x01(\x0b\x32 .clearance.v1.CastShapesResponseH\x00\x12\x44\n\x12\x63heck_moving_pairs\x18\x08 \x01(\x0b\x32&.clearance.v1.CheckMovingPairsResponseH\x00\x12\x30\n\x07overlap\x18\t \x01(\x0b\x32\x1d.clearance.v1.OverlapResponseH\x00\x12=\n\x0enearest_bodies\x18\n \x01(\x0b\x32#.clearance.v1.NearestBodiesResponseH\x00\x12;\n\rcheck_motions\x18\x0b \x01(\x0b\x32\".clearance.v1.CheckMotionsResponseH\x00\x12\x35\n\ncheck_path\x18\x0c \x01(\x0b\x32\x1f.clearance.v1.CheckPathResponseH\x00\x12\x34\n\tclearance\x18\r \x01(\x0b\x32\x1f.clearance.v1.ClearanceResponseH\x00\x12\x32\n\x08\x65stimate\x18\x0e \x01(\x0b\x32\x1e.clearance.v1.EstimateResponseH\x00\x42\t\n\x07outcome\"\xbe\x01\n\nQueryError\x12\x0c\n\x04\x63ode\x18\x01 \x01(\x05\x12)\n\x06reason\x18\x02 \x01(\x0e\x32\x19.clearance.v1.ErrorReason\x12\x0f\n\x07message\x18\x03 \x01(\t\x12\x36\n\x07\x64\x65tails\x18\x04 \x03(\x0b\x32%.clearance.v1.QueryError.DetailsEntry\x1a.\n\x0c\x44\x65tailsEntry\x12\x0b\n\x03key\x18\x01 \x01(\t\x12\r\n\x05value\x18\x02 \x01(\t:\x02\x38\x01\"\x16\n\x14GetServerInfoRequest\"\xad\x01\n\x15GetServerInfoResponse\x12\x0f\n\x07version\x18\x01 \x01(\t\x12!\n\x05\x64oors\x18\x02 \x03(\x0b\x32\x12.clearance.v1.Door\x12#\n\x06limits\x18\x03 \x03(\x0b\x32\x13.clearance.v1.Limit\x12*\n\x06scenes\x18\x04 \x03(\x0b\x32\x1a.clearance.v1.SceneSummary\x12\x0f\n\x07threads\x18\x05 \x01(\r\"%\n\x04\x44oor\x12\x0c\n\x04kind\x18\x01 \x01(\t\x12\x0f\n\x07\x61\x64\x64ress\x18\x02 \x01(\t\"H\n\x05Limit\x12\x0c\n\x04name\x18\x01 \x01(\t\x12\x0c\n\x04unit\x18\x02 \x01(\t\x12\r\n\x05value\x18\x03 \x01(\x04\x12\x14\n\x0cwhat_happens\x18\x04 \x01(\t*\x8d\x05\n\x0b\x45rrorReason\x12\x1c\n\x18\x45RROR_REASON_UNSPECIFIED\x10\x00\x12\x1e\n\x1a\x45RROR_REASON_INVALID_FIELD\x10\x01\x12\x1a\n\x16\x45RROR_REASON_NOT_FOUND\x10\x02\x12\x1f\n\x1b\x45RROR_REASON_ALREADY_EXISTS\x10\x03\x12\x1d\n\x19\x45RROR_REASON_EDIT_REFUSED\x10\x04\x12\x1c\n\x18\x45RROR_REASON_WRONG_EPOCH\x10\x05\x12\"\n\x1e\x45RROR_REASON_REVISION_MOVED_ON\x10\x06\x12\x1e\n\x1a\x45RROR_REASON_REVISION_GONE\x10\x07\x12!\n\x1d\x45RROR_REASON_REVISION_NOT_YET\x10\x08\x12\x1f\n\x1b\x45RROR_REASON_LIMIT_EXCEEDED\x10\t\x12\"\n\x1e\x45RROR_REASON_DEADLINE_EXCEEDED\x10\n\x12\x1e\n\x1a\x45RROR_REASON_HASH_MISMATCH\x10\x0b\x12\x1e\n\x1a\x45RROR_REASON_SHUTTING_DOWN\x10\x0c\x12\x19\n\x15\x45RROR_REASON_INTERNAL\x10\r\x12\x1b\n\x17\x45RROR_REASON_KEY_REUSED\x10\x0e\x12\x19\n\x15\x45RROR_REASON_NO_TOKEN\x10\x0f\x12\x1e\n\x1a\x45RROR_REASON_UNKNOWN_TOKEN\x10\x10\x12\x1e\n\x1a\x45RROR_REASON_MISSING_SCOPE\x10\x11\x12$\n ERROR_REASON_EFFECT_NOT_DECLARED\x10\x13\x12!\n\x1d\x45RROR_REASON_EFFECT_NOT_BUILT\x10\x12\x32\x84\x05\n\x06Scenes\x12R\n\x0b\x43reateScene\x12 .clearance.v1.CreateSceneRequest\x1a!.clearance.v1.CreateSceneResponse\x12O\n\nListScenes\x12\x1f.clearance.v1.ListScenesRequest\x1a .clearance.v1.ListScenesResponse\x12I\n\x08GetScene\x12\x1d.clearance.v1.GetSceneRequest\x1a\x1e.clearance.v1.GetSceneResponse\x12[\n\x0eGetSceneHealth\x12#.clearance.v1.GetSceneHealthRequest\x1a$.clearance.v1.GetSceneHealthResponse\x12R\n\x0b\x44\x65leteScene\x12 .clearance.v1.DeleteSceneRequest\x1a!.clearance.v1.DeleteSceneResponse\x12@\n\x05\x41pply\x12\x1a.clearance.v1.ApplyRequest\x1a\x1b.clearance.v1.ApplyResponse\x12\x42\n\x05Watch\x12\x1a.clearance.v1.WatchRequest\x1a\x1b.clearance.v1.WatchResponse0\x01\x12S\n\nPoseStream\x12\x1f.clearance.v1.PoseStreamRequest\x1a .clearance.v1.PoseStreamResponse(\x01\x30\x01\x32\xfa\x01\n\x06\x41ssets\x12L\n\tHasAssets\x12\x1e.clearance.v1.HasAssetsRequest\x1a\x1f.clearance.v1.HasAssetsResponse\x12K\n\x08PutAsset\x12\x1d.clearance.v1.PutAssetRequest\x1a\x1e.clearance.v1.PutAssetResponse(\x01\x12U\n\x0c\x44\x65scribeMesh\x12!.clearance.v1.DescribeMeshRequest\x1a\".clearance.v1.DescribeMeshResponse2\xf2\x01\n\x06Robots\x12L\n\tLoadRobot\x12\x1e.clearance.v1.LoadRobotRequest\x1a\x1f.clearance.v1.LoadRobotResponse\x12O\n\nListRobots\x12\x1f.clearance.v1.ListRobotsRequest\x1a .clearance.v1.ListRobotsResponse\x12I\n\x08GetRobot\x12\x1d.clearance.v1.GetRobotRequest\x1a\x1e.clearance.v1.GetRobotResponse2\x83\t\n\x07Queries\x12R\n\x0b\x43heckStates\x12 .clearance.v1.CheckStatesRequest\x1a!.clearance.v1.CheckStatesResponse\x12\x46\n\x07\x43ollide\x12\x1c.clearance.v1.CollideRequest\x1a\x1d.clearance.v1.CollideResponse\x12I\n\x08\x44istance\x12\x1d.clearance.v1.DistanceRequest\x1a\x1e.clearance.v1.DistanceResponse\x12I\n\x08\x43\x61stRays\x12\x1d.clearance.v1.CastRaysRequest\x1a\x1e.clearance.v1.CastRaysResponse\x12O\n\nCastShapes\x12\x1f.clearance.v1.CastShapesRequest\x1a .clearance.v1.CastShapesResponse\x12\x61\n\x10\x43heckMovingPairs\x12%.clearance.v1.CheckMovingPairsRequest\x1a&.clearance.v1.CheckMovingPairsResponse\x12\x46\n\x07Overlap\x12\x1c.clearance.v1.OverlapRequest\x1a\x1d.clearance.v1.OverlapResponse\x12X\n\rNearestBodies\x12\".clearance.v1.NearestBodiesRequest\x1a#.clearance.v1.NearestBodiesResponse\x12Z\n\rWatchContacts\x12\".clearance.v1.WatchContactsRequest\x1a#.clearance.v1.WatchContactsResponse0\x01\x12U\n\x0c\x43heckMotions\x12!.clearance.v1.CheckMotionsRequest\x1a\".clearance.v1.CheckMotionsResponse\x12L\n\tCheckPath\x12\x1e.clearance.v1.CheckPathRequest\x1a\x1f.clearance.v1.CheckPathResponse\x12L\n\tClearance\x12\x1e.clearance.v1.ClearanceRequest\x1a\x1f.clearance.v1.ClearanceResponse\x12I\n\x08\x45stimate\x12\x1d.clearance.v1.EstimateRequest\x1a\x1e.clearance.v1.EstimateResponse\x12V\n\x0bQueryStream\x12 .clearance.v1.QueryStreamRequest\x1a!.clearance.v1.QueryStreamResponse(\x01\x30\x01\x32\x62\n\x06Server\x12X\n\rGetServerInfo\x12\".clearance.v1.GetServerInfoRequest\x1a#.clearance.v1.GetServerInfoResponseb\x06proto3')
 
 _globals = globals()
 _builder.BuildMessageAndEnumDescriptors(DESCRIPTOR, _globals)
@@ -42,88 +43,88 @@ if not _descriptor._USE_C_DESCRIPTORS:
   DESCRIPTOR._loaded_options = None
   _globals['_QUERYERROR_DETAILSENTRY']._loaded_options = None
   _globals['_QUERYERROR_DETAILSENTRY']._serialized_options = b'8\001'
-  _globals['_ERRORREASON']._serialized_start=4167
-  _globals['_ERRORREASON']._serialized_end=4820
-  _globals['_CREATESCENEREQUEST']._serialized_start=285
-  _globals['_CREATESCENEREQUEST']._serialized_end=366
-  _globals['_CREATESCENERESPONSE']._serialized_start=368
-  _globals['_CREATESCENERESPONSE']._serialized_end=432
-  _globals['_LISTSCENESREQUEST']._serialized_start=434
-  _globals['_LISTSCENESREQUEST']._serialized_end=453
-  _globals['_LISTSCENESRESPONSE']._serialized_start=455
-  _globals['_LISTSCENESRESPONSE']._serialized_end=519
-  _globals['_GETSCENEREQUEST']._serialized_start=522
-  _globals['_GETSCENEREQUEST']._serialized_end=660
-  _globals['_GETSCENERESPONSE']._serialized_start=662
-  _globals['_GETSCENERESPONSE']._serialized_end=724
-  _globals['_DELETESCENEREQUEST']._serialized_start=726
-  _globals['_DELETESCENEREQUEST']._serialized_end=761
-  _globals['_DELETESCENERESPONSE']._serialized_start=763
-  _globals['_DELETESCENERESPONSE']._serialized_end=827
-  _globals['_APPLYREQUEST']._serialized_start=830
-  _globals['_APPLYREQUEST']._serialized_end=1021
-  _globals['_APPLYRESPONSE']._serialized_start=1023
-  _globals['_APPLYRESPONSE']._serialized_end=1086
-  _globals['_HASASSETSREQUEST']._serialized_start=1088
-  _globals['_HASASSETSREQUEST']._serialized_end=1122
-  _globals['_HASASSETSRESPONSE']._serialized_start=1124
-  _globals['_HASASSETSRESPONSE']._serialized_end=1160
-  _globals['_PUTASSETREQUEST']._serialized_start=1162
-  _globals['_PUTASSETREQUEST']._serialized_end=1249
-  _globals['_ASSETHEADER']._serialized_start=1251
-  _globals['_ASSETHEADER']._serialized_end=1295
-  _globals['_PUTASSETRESPONSE']._serialized_start=1297
-  _globals['_PUTASSETRESPONSE']._serialized_end=1371
-  _globals['_DESCRIBEMESHREQUEST']._serialized_start=1373
-  _globals['_DESCRIBEMESHREQUEST']._serialized_end=1469
-  _globals['_DESCRIBEMESHRESPONSE']._serialized_start=1471
-  _globals['_DESCRIBEMESHRESPONSE']._serialized_end=1531
-  _globals['_MESHCARD']._serialized_start=1534
-  _globals['_MESHCARD']._serialized_end=1709
-  _globals['_LOADROBOTRESPONSE']._serialized_start=1711
-  _globals['_LOADROBOTRESPONSE']._serialized_end=1771
-  _globals['_LISTROBOTSREQUEST']._serialized_start=1773
-  _globals['_LISTROBOTSREQUEST']._serialized_end=1792
-  _globals['_LISTROBOTSRESPONSE']._serialized_start=1794
-  _globals['_LISTROBOTSRESPONSE']._serialized_end=1858
-  _globals['_ROBOTSUMMARY']._serialized_start=1860
-  _globals['_ROBOTSUMMARY']._serialized_end=1900
-  _globals['_GETROBOTREQUEST']._serialized_start=1902
-  _globals['_GETROBOTREQUEST']._serialized_end=1931
-  _globals['_GETROBOTRESPONSE']._serialized_start=1933
-  _globals['_GETROBOTRESPONSE']._serialized_end=1992
-  _globals['_CHECKSTATESRESPONSE']._serialized_start=1994
-  _globals['_CHECKSTATESRESPONSE']._serialized_end=2053
-  _globals['_COLLIDERESPONSE']._serialized_start=2055
-  _globals['_COLLIDERESPONSE']._serialized_end=2110
-  _globals['_DISTANCERESPONSE']._serialized_start=2112
-  _globals['_DISTANCERESPONSE']._serialized_end=2168
-  _globals['_QUERYSTREAMREQUEST']._serialized_start=2171
-  _globals['_QUERYSTREAMREQUEST']._serialized_end=2881
-  _globals['_QUERYSTREAMOPTIONS']._serialized_start=2883
-  _globals['_QUERYSTREAMOPTIONS']._serialized_end=2944
-  _globals['_QUERYSTREAMRESPONSE']._serialized_start=2947
-  _globals['_QUERYSTREAMRESPONSE']._serialized_end=3658
-  _globals['_QUERYERROR']._serialized_start=3661
-  _globals['_QUERYERROR']._serialized_end=3851
-  _globals['_QUERYERROR_DETAILSENTRY']._serialized_start=3805
-  _globals['_QUERYERROR_DETAILSENTRY']._serialized_end=3851
-  _globals['_GETSERVERINFOREQUEST']._serialized_start=3853
-  _globals['_GETSERVERINFOREQUEST']._serialized_end=3875
-  _globals['_GETSERVERINFORESPONSE']._serialized_start=3878
-  _globals['_GETSERVERINFORESPONSE']._serialized_end=4051
-  _globals['_DOOR']._serialized_start=4053
-  _globals['_DOOR']._serialized_end=4090
-  _globals['_LIMIT']._serialized_start=4092
-  _globals['_LIMIT']._serialized_end=4164
-  _globals['_SCENES']._serialized_start=4823
-  _globals['_SCENES']._serialized_end=5467
-  _globals['_ASSETS']._serialized_start=5470
-  _globals['_ASSETS']._serialized_end=5720
-  _globals['_ROBOTS']._serialized_start=5723
-  _globals['_ROBOTS']._serialized_end=5965
-  _globals['_QUERIES']._serialized_start=5968
-  _globals['_QUERIES']._serialized_end=7048
-  _globals['_SERVER']._serialized_start=7050
-  _globals['_SERVER']._serialized_end=7148
+  _globals['_ERRORREASON']._serialized_start=4299
+  _globals['_ERRORREASON']._serialized_end=4952
+  _globals['_CREATESCENEREQUEST']._serialized_start=314
+  _globals['_CREATESCENEREQUEST']._serialized_end=395
+  _globals['_CREATESCENERESPONSE']._serialized_start=397
+  _globals['_CREATESCENERESPONSE']._serialized_end=461
+  _globals['_LISTSCENESREQUEST']._serialized_start=463
+  _globals['_LISTSCENESREQUEST']._serialized_end=482
+  _globals['_LISTSCENESRESPONSE']._serialized_start=484
+  _globals['_LISTSCENESRESPONSE']._serialized_end=548
+  _globals['_GETSCENEREQUEST']._serialized_start=551
+  _globals['_GETSCENEREQUEST']._serialized_end=689
+  _globals['_GETSCENERESPONSE']._serialized_start=691
+  _globals['_GETSCENERESPONSE']._serialized_end=753
+  _globals['_DELETESCENEREQUEST']._serialized_start=755
+  _globals['_DELETESCENEREQUEST']._serialized_end=790
+  _globals['_DELETESCENERESPONSE']._serialized_start=792
+  _globals['_DELETESCENERESPONSE']._serialized_end=856
+  _globals['_APPLYREQUEST']._serialized_start=859
+  _globals['_APPLYREQUEST']._serialized_end=1050
+  _globals['_APPLYRESPONSE']._serialized_start=1052
+  _globals['_APPLYRESPONSE']._serialized_end=1115
+  _globals['_HASASSETSREQUEST']._serialized_start=1117
+  _globals['_HASASSETSREQUEST']._serialized_end=1151
+  _globals['_HASASSETSRESPONSE']._serialized_start=1153
+  _globals['_HASASSETSRESPONSE']._serialized_end=1189
+  _globals['_PUTASSETREQUEST']._serialized_start=1191
+  _globals['_PUTASSETREQUEST']._serialized_end=1278
+  _globals['_ASSETHEADER']._serialized_start=1280
+  _globals['_ASSETHEADER']._serialized_end=1324
+  _globals['_PUTASSETRESPONSE']._serialized_start=1326
+  _globals['_PUTASSETRESPONSE']._serialized_end=1400
+  _globals['_DESCRIBEMESHREQUEST']._serialized_start=1402
+  _globals['_DESCRIBEMESHREQUEST']._serialized_end=1498
+  _globals['_DESCRIBEMESHRESPONSE']._serialized_start=1500
+  _globals['_DESCRIBEMESHRESPONSE']._serialized_end=1560
+  _globals['_MESHCARD']._serialized_start=1563
+  _globals['_MESHCARD']._serialized_end=1738
+  _globals['_LOADROBOTRESPONSE']._serialized_start=1740
+  _globals['_LOADROBOTRESPONSE']._serialized_end=1800
+  _globals['_LISTROBOTSREQUEST']._serialized_start=1802
+  _globals['_LISTROBOTSREQUEST']._serialized_end=1821
+  _globals['_LISTROBOTSRESPONSE']._serialized_start=1823
+  _globals['_LISTROBOTSRESPONSE']._serialized_end=1887
+  _globals['_ROBOTSUMMARY']._serialized_start=1889
+  _globals['_ROBOTSUMMARY']._serialized_end=1929
+  _globals['_GETROBOTREQUEST']._serialized_start=1931
+  _globals['_GETROBOTREQUEST']._serialized_end=1960
+  _globals['_GETROBOTRESPONSE']._serialized_start=1962
+  _globals['_GETROBOTRESPONSE']._serialized_end=2021
+  _globals['_CHECKSTATESRESPONSE']._serialized_start=2023
+  _globals['_CHECKSTATESRESPONSE']._serialized_end=2082
+  _globals['_COLLIDERESPONSE']._serialized_start=2084
+  _globals['_COLLIDERESPONSE']._serialized_end=2139
+  _globals['_DISTANCERESPONSE']._serialized_start=2141
+  _globals['_DISTANCERESPONSE']._serialized_end=2197
+  _globals['_QUERYSTREAMREQUEST']._serialized_start=2200
+  _globals['_QUERYSTREAMREQUEST']._serialized_end=2961
+  _globals['_QUERYSTREAMOPTIONS']._serialized_start=2963
+  _globals['_QUERYSTREAMOPTIONS']._serialized_end=3024
+  _globals['_QUERYSTREAMRESPONSE']._serialized_start=3027
+  _globals['_QUERYSTREAMRESPONSE']._serialized_end=3790
+  _globals['_QUERYERROR']._serialized_start=3793
+  _globals['_QUERYERROR']._serialized_end=3983
+  _globals['_QUERYERROR_DETAILSENTRY']._serialized_start=3937
+  _globals['_QUERYERROR_DETAILSENTRY']._serialized_end=3983
+  _globals['_GETSERVERINFOREQUEST']._serialized_start=3985
+  _globals['_GETSERVERINFOREQUEST']._serialized_end=4007
+  _globals['_GETSERVERINFORESPONSE']._serialized_start=4010
+  _globals['_GETSERVERINFORESPONSE']._serialized_end=4183
+  _globals['_DOOR']._serialized_start=4185
+  _globals['_DOOR']._serialized_end=4222
+  _globals['_LIMIT']._serialized_start=4224
+  _globals['_LIMIT']._serialized_end=4296
+  _globals['_SCENES']._serialized_start=4955
+  _globals['_SCENES']._serialized_end=5599
+  _globals['_ASSETS']._serialized_start=5602
+  _globals['_ASSETS']._serialized_end=5852
+  _globals['_ROBOTS']._serialized_start=5855
+  _globals['_ROBOTS']._serialized_end=6097
+  _globals['_QUERIES']._serialized_start=6100
+  _globals['_QUERIES']._serialized_end=7255
+  _globals['_SERVER']._serialized_start=7257
+  _globals['_SERVER']._serialized_end=7355
 # @@protoc_insertion_point(module_scope)

@@ -1,8 +1,9 @@
-from clearance.v1 import health_pb2 as _health_pb2
 from clearance.v1 import cast_pb2 as _cast_pb2
 from clearance.v1 import contact_pb2 as _contact_pb2
-from clearance.v1 import motion_pb2 as _motion_pb2
+from clearance.v1 import estimate_pb2 as _estimate_pb2
 from clearance.v1 import geometry_pb2 as _geometry_pb2
+from clearance.v1 import health_pb2 as _health_pb2
+from clearance.v1 import motion_pb2 as _motion_pb2
 from clearance.v1 import query_pb2 as _query_pb2
 from clearance.v1 import robot_pb2 as _robot_pb2
 from clearance.v1 import scene_pb2 as _scene_pb2
@@ -262,7 +263,7 @@ class DistanceResponse(_message.Message):
     def __init__(self, answer: _Optional[_Union[_query_pb2.Answer, _Mapping]] = ...) -> None: ...
 
 class QueryStreamRequest(_message.Message):
-    __slots__ = ("id", "options", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance")
+    __slots__ = ("id", "options", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance", "estimate")
     ID_FIELD_NUMBER: _ClassVar[int]
     OPTIONS_FIELD_NUMBER: _ClassVar[int]
     CHECK_STATES_FIELD_NUMBER: _ClassVar[int]
@@ -276,6 +277,7 @@ class QueryStreamRequest(_message.Message):
     CHECK_MOTIONS_FIELD_NUMBER: _ClassVar[int]
     CHECK_PATH_FIELD_NUMBER: _ClassVar[int]
     CLEARANCE_FIELD_NUMBER: _ClassVar[int]
+    ESTIMATE_FIELD_NUMBER: _ClassVar[int]
     id: int
     options: QueryStreamOptions
     check_states: _query_pb2.CheckStatesRequest
@@ -289,7 +291,8 @@ class QueryStreamRequest(_message.Message):
     check_motions: _motion_pb2.CheckMotionsRequest
     check_path: _motion_pb2.CheckPathRequest
     clearance: _motion_pb2.ClearanceRequest
-    def __init__(self, id: _Optional[int] = ..., options: _Optional[_Union[QueryStreamOptions, _Mapping]] = ..., check_states: _Optional[_Union[_query_pb2.CheckStatesRequest, _Mapping]] = ..., collide: _Optional[_Union[_query_pb2.CollideRequest, _Mapping]] = ..., distance: _Optional[_Union[_query_pb2.DistanceRequest, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysRequest, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesRequest, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsRequest, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapRequest, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesRequest, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsRequest, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathRequest, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceRequest, _Mapping]] = ...) -> None: ...
+    estimate: _estimate_pb2.EstimateRequest
+    def __init__(self, id: _Optional[int] = ..., options: _Optional[_Union[QueryStreamOptions, _Mapping]] = ..., check_states: _Optional[_Union[_query_pb2.CheckStatesRequest, _Mapping]] = ..., collide: _Optional[_Union[_query_pb2.CollideRequest, _Mapping]] = ..., distance: _Optional[_Union[_query_pb2.DistanceRequest, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysRequest, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesRequest, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsRequest, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapRequest, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesRequest, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsRequest, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathRequest, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceRequest, _Mapping]] = ..., estimate: _Optional[_Union[_estimate_pb2.EstimateRequest, _Mapping]] = ...) -> None: ...
 
 class QueryStreamOptions(_message.Message):
     __slots__ = ("in_order", "max_in_flight")
@@ -300,7 +303,7 @@ class QueryStreamOptions(_message.Message):
     def __init__(self, in_order: bool = ..., max_in_flight: _Optional[int] = ...) -> None: ...
 
 class QueryStreamResponse(_message.Message):
-    __slots__ = ("id", "error", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance")
+    __slots__ = ("id", "error", "check_states", "collide", "distance", "cast_rays", "cast_shapes", "check_moving_pairs", "overlap", "nearest_bodies", "check_motions", "check_path", "clearance", "estimate")
     ID_FIELD_NUMBER: _ClassVar[int]
     ERROR_FIELD_NUMBER: _ClassVar[int]
     CHECK_STATES_FIELD_NUMBER: _ClassVar[int]
@@ -314,6 +317,7 @@ class QueryStreamResponse(_message.Message):
     CHECK_MOTIONS_FIELD_NUMBER: _ClassVar[int]
     CHECK_PATH_FIELD_NUMBER: _ClassVar[int]
     CLEARANCE_FIELD_NUMBER: _ClassVar[int]
+    ESTIMATE_FIELD_NUMBER: _ClassVar[int]
     id: int
     error: QueryError
     check_states: CheckStatesResponse
@@ -327,7 +331,8 @@ class QueryStreamResponse(_message.Message):
     check_motions: _motion_pb2.CheckMotionsResponse
     check_path: _motion_pb2.CheckPathResponse
     clearance: _motion_pb2.ClearanceResponse
-    def __init__(self, id: _Optional[int] = ..., error: _Optional[_Union[QueryError, _Mapping]] = ..., check_states: _Optional[_Union[CheckStatesResponse, _Mapping]] = ..., collide: _Optional[_Union[CollideResponse, _Mapping]] = ..., distance: _Optional[_Union[DistanceResponse, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysResponse, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesResponse, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsResponse, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapResponse, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesResponse, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsResponse, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathResponse, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceResponse, _Mapping]] = ...) -> None: ...
+    estimate: _estimate_pb2.EstimateResponse
+    def __init__(self, id: _Optional[int] = ..., error: _Optional[_Union[QueryError, _Mapping]] = ..., check_states: _Optional[_Union[CheckStatesResponse, _Mapping]] = ..., collide: _Optional[_Union[CollideResponse, _Mapping]] = ..., distance: _Optional[_Union[DistanceResponse, _Mapping]] = ..., cast_rays: _Optional[_Union[_cast_pb2.CastRaysResponse, _Mapping]] = ..., cast_shapes: _Optional[_Union[_cast_pb2.CastShapesResponse, _Mapping]] = ..., check_moving_pairs: _Optional[_Union[_cast_pb2.CheckMovingPairsResponse, _Mapping]] = ..., overlap: _Optional[_Union[_cast_pb2.OverlapResponse, _Mapping]] = ..., nearest_bodies: _Optional[_Union[_cast_pb2.NearestBodiesResponse, _Mapping]] = ..., check_motions: _Optional[_Union[_motion_pb2.CheckMotionsResponse, _Mapping]] = ..., check_path: _Optional[_Union[_motion_pb2.CheckPathResponse, _Mapping]] = ..., clearance: _Optional[_Union[_motion_pb2.ClearanceResponse, _Mapping]] = ..., estimate: _Optional[_Union[_estimate_pb2.EstimateResponse, _Mapping]] = ...) -> None: ...
 
 class QueryError(_message.Message):
     __slots__ = ("code", "reason", "message", "details")

@@ -5,6 +5,7 @@ import warnings
 
 from clearance.v1 import cast_pb2 as clearance_dot_v1_dot_cast__pb2
 from clearance.v1 import contact_pb2 as clearance_dot_v1_dot_contact__pb2
+from clearance.v1 import estimate_pb2 as clearance_dot_v1_dot_estimate__pb2
 from clearance.v1 import health_pb2 as clearance_dot_v1_dot_health__pb2
 from clearance.v1 import motion_pb2 as clearance_dot_v1_dot_motion__pb2
 from clearance.v1 import query_pb2 as clearance_dot_v1_dot_query__pb2
@@ -814,6 +815,11 @@ class QueriesStub(object):
                 request_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
                 response_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
                 _registered_method=True)
+        self.Estimate = channel.unary_unary(
+                '/clearance.v1.Queries/Estimate',
+                request_serializer=clearance_dot_v1_dot_estimate__pb2.EstimateRequest.SerializeToString,
+                response_deserializer=clearance_dot_v1_dot_estimate__pb2.EstimateResponse.FromString,
+                _registered_method=True)
         self.QueryStream = channel.stream_stream(
                 '/clearance.v1.Queries/QueryStream',
                 request_serializer=clearance_dot_v1_dot_service__pb2.QueryStreamRequest.SerializeToString,
@@ -909,6 +915,13 @@ class QueriesServicer(object):
         context.set_details('Method not implemented!')
         raise NotImplementedError('Method not implemented!')
 
+    def Estimate(self, request, context):
+        """What would a question cost, for each output at each tolerance?
+        """
+        context.set_code(grpc.StatusCode.UNIMPLEMENTED)
+        context.set_details('Method not implemented!')
+        raise NotImplementedError('Method not implemented!')
+
     def QueryStream(self, request_iterator, context):
         """Questions of any kind, many at a time.
         """
@@ -978,6 +991,11 @@ def add_QueriesServicer_to_server(servicer, server):
                     servicer.Clearance,
                     request_deserializer=clearance_dot_v1_dot_motion__pb2.ClearanceRequest.FromString,
                     response_serializer=clearance_dot_v1_dot_motion__pb2.ClearanceResponse.SerializeToString,
+            ),
+            'Estimate': grpc.unary_unary_rpc_method_handler(
+                    servicer.Estimate,
+                    request_deserializer=clearance_dot_v1_dot_estimate__pb2.EstimateRequest.FromString,
+                    response_serializer=clearance_dot_v1_dot_estimate__pb2.EstimateResponse.SerializeToString,
             ),
             'QueryStream': grpc.stream_stream_rpc_method_handler(
                     servicer.QueryStream,
@@ -1310,6 +1328,33 @@ class Queries(object):
             '/clearance.v1.Queries/Clearance',
             clearance_dot_v1_dot_motion__pb2.ClearanceRequest.SerializeToString,
             clearance_dot_v1_dot_motion__pb2.ClearanceResponse.FromString,
+            options,
+            channel_credentials,
+            insecure,
+            call_credentials,
+            compression,
+            wait_for_ready,
+            timeout,
+            metadata,
+            _registered_method=True)
+
+    @staticmethod
+    def Estimate(request,
+            target,
+            options=(),
+            channel_credentials=None,
+            call_credentials=None,
+            insecure=False,
+            compression=None,
+            wait_for_ready=None,
+            timeout=None,
+            metadata=None):
+        return grpc.experimental.unary_unary(
+            request,
+            target,
+            '/clearance.v1.Queries/Estimate',
+            clearance_dot_v1_dot_estimate__pb2.EstimateRequest.SerializeToString,
+            clearance_dot_v1_dot_estimate__pb2.EstimateResponse.FromString,
             options,
             channel_credentials,
             insecure,
