@@ -8,7 +8,7 @@ use super::robot_files::RobotFiles;
 use crate::geometry::Pose;
 use crate::query::{Answer, CheckStates};
 use crate::robot::{LinkOptions, MeshUse, ModelOptions};
-use crate::scene::{BodyId, Edit, NewBody, Revision, SceneOptions};
+use crate::scene::{BodyId, Edit, Effects, NewBody, Party, Revision, SceneOptions};
 use crate::service::{self, Change, ContentHash, Patience, RobotDescription, Service, ServiceError, Target};
 #[cfg(feature = "grpc")]
 use crate::transports::grpc::{Client, RemoteEdit};
@@ -103,7 +103,7 @@ impl Backend {
         }
     }
 
-    /// A new scene with a robot at the origin and bodies around it: one edit list, one revision.
+    /// A new scene with a robot at the origin and bodies around it, and what may be asked of pairs: one edit list, one revision.
     ///
     /// # Errors
     /// The scene cannot be, for example two bodies of one name.
@@ -112,14 +112,17 @@ impl Backend {
         name: &str,
         (robot, model): (&str, &LoadedModel),
         bodies: Vec<NewBody>,
+        declared: Vec<(Party, Party, Effects)>,
     ) -> Result<MadeScene, Failed> {
         match self {
             Self::Library(service) => {
                 service.create_scene(name, &SceneOptions::default()).map_err(Failed::failure)?;
                 let model = service.robots().get(&model.id).map_err(Failed::failure)?.model;
                 let robot = Edit::AddRobot { name: robot.to_owned(), model, base: Pose::identity() };
-                let edits = std::iter::once(robot).chain(bodies.into_iter().map(Edit::AddBody)).collect();
-                let change = Change { edits, expected_epoch: None, expected_revision: None, key: None };
+                let declare = |(a, b, effects)| Edit::DeclareEffects { a, b, effects: Some(effects) };
+                let edits = std::iter::once(robot).chain(bodies.into_iter().map(Edit::AddBody));
+                let edits = edits.chain(declared.into_iter().map(declare)).collect();
+                let change = Change { edits, ..Change::default() };
                 let applied =
                     service.apply(name, Patience::default(), move || Ok(change)).await.map_err(Failed::input)?.applied;
                 Ok(MadeScene { revision: applied.revision, bodies: applied.added })
@@ -129,8 +132,9 @@ impl Backend {
                 client.create_scene(name).await.map_err(Failed::daemon)?;
                 let (robot, model) = (robot.to_owned(), model.id.clone());
                 let robot = RemoteEdit::AddRobot { name: robot, model, base: Pose::identity() };
-                let edits: Vec<RemoteEdit> =
-                    std::iter::once(robot).chain(bodies.into_iter().map(RemoteEdit::AddBody)).collect();
+                let declare = |(a, b, effects)| RemoteEdit::DeclareEffects { a, b, effects: Some(effects) };
+                let edits = std::iter::once(robot).chain(bodies.into_iter().map(RemoteEdit::AddBody));
+                let edits: Vec<RemoteEdit> = edits.chain(declared.into_iter().map(declare)).collect();
                 let applied = client.apply(name, &edits).await.map_err(Failed::daemon)?.applied;
                 Ok(MadeScene { revision: applied.revision, bodies: applied.added })
             }

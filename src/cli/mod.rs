@@ -17,6 +17,7 @@ mod own_name;
 mod pairs;
 mod robot_files;
 mod sample;
+mod scene_effects;
 mod scene_file;
 mod serve;
 mod state_line;

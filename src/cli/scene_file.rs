@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::case::{read_pose, read_shape};
 use super::json_field::{Field, FieldError};
 use super::robot_files::read_text;
+use super::scene_effects::{DeclaredPair, read_effects, read_groups};
 use crate::geometry::{Pose, Shape};
 
 /// One scene of a scene file.
@@ -17,6 +18,8 @@ pub struct SceneEntry {
     pub name: String,
     /// What stands in it.
     pub objects: Vec<SceneObject>,
+    /// What may be asked of which pairs; of others everything.
+    pub effects: Vec<DeclaredPair>,
 }
 
 /// A body of a scene.
@@ -28,6 +31,8 @@ pub struct SceneObject {
     pub shape: Arc<Shape>,
     /// The body's frame in the world.
     pub pose: Pose,
+    /// Groups that it is in.
+    pub groups: Vec<String>,
 }
 
 /// One line of a file of joint vectors.
@@ -48,7 +53,7 @@ pub struct State {
     pub positions: Vec<f64>,
 }
 
-/// Reads a scene file: a list of `{name, objects: [{name, shape, pose}]}`.
+/// Reads a scene file: a list of `{name, objects: [{name, shape, pose, groups}], effects}`; `groups` and `effects` may be left out.
 ///
 /// # Errors
 /// Names file and field.
@@ -76,9 +81,11 @@ fn scene_of(scene: &Field) -> Result<SceneEntry, FieldError> {
             name: object.member("name")?.text()?.to_owned(),
             shape: Arc::new(read_shape(&object.member("shape")?)?),
             pose: read_pose(&object.member("pose")?)?,
+            groups: read_groups(object.optional("groups").as_ref())?,
         });
     }
-    Ok(SceneEntry { name: scene.member("name")?.text()?.to_owned(), objects })
+    let effects = read_effects(scene.optional("effects").as_ref())?;
+    Ok(SceneEntry { name: scene.member("name")?.text()?.to_owned(), objects, effects })
 }
 
 /// Reads joint vectors: JSON lines `{id, scene, q}`. A bad line is kept with what is wrong with it.

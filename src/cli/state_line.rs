@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::words;
 use crate::narrow_phase;
-use crate::query::{ItemAnswer, PairAnswer, Side, Verdict};
-use crate::scene::{BodyId, Revision};
+use crate::query::{Coverage, ItemAnswer, PairAnswer, Side, Verdict};
+use crate::scene::{BodyId, BodyRef, Party, Revision};
 
 /// An answer, or what is wrong with a line of the input. Metres; null where there is no such pair.
 #[derive(Clone, Debug, Serialize)]
@@ -25,6 +25,9 @@ pub struct AnswerLine {
     env_pair: Option<[String; 2]>,
     revision: Option<u64>,
     cost: Option<Cost>,
+    /// Parties whose pairs the scene declares empty.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    declared_empty: Vec<[String; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     message: Option<String>,
 }
@@ -70,8 +73,16 @@ impl AnswerLine {
             env_pair: named(&item.nearest_scene),
             revision: Some(revision.0),
             cost: Some(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations }),
+            declared_empty: Vec::new(),
             message: item.problem.clone(),
         }
+    }
+
+    /// The same with what it says nothing about.
+    #[must_use]
+    pub fn leaving_out(self, coverage: &Coverage, names: Names) -> Self {
+        let pairs = coverage.declared_empty.iter();
+        Self { declared_empty: pairs.map(|(a, b)| [names.of_party(a), names.of_party(b)]).collect(), ..self }
     }
 
     /// A line that nobody could be asked about.
@@ -90,6 +101,7 @@ impl AnswerLine {
             env_pair: None,
             revision: None,
             cost: None,
+            declared_empty: Vec::new(),
             message: Some(message.to_owned()),
         }
     }
@@ -103,6 +115,16 @@ impl Names<'_> {
             Side::Link { link, .. } => self.links[*link as usize].clone(),
             Side::Body { id, .. } => self.bodies.get(id).cloned().unwrap_or_else(|| format!("body {id}")),
             Side::Query { .. } => "query".to_owned(),
+        }
+    }
+    /// What a party is called, as a scene file calls it.
+    fn of_party(&self, party: &Party) -> String {
+        match party {
+            Party::Body(BodyRef::Id(id)) => self.bodies.get(id).cloned().unwrap_or_else(|| format!("body {id}")),
+            Party::Body(BodyRef::Name(name)) | Party::Group(name) => name.clone(),
+            Party::Link { link, .. } => link.clone(),
+            Party::Robot(_) => "robot".to_owned(),
+            Party::Everything => "everything".to_owned(),
         }
     }
 }

@@ -34,7 +34,7 @@ pub struct States {
     /// What the robot's meshes stand for: their surface as it is, or their convex hull.
     #[arg(long, value_enum, default_value = "exact")]
     pub mesh: MeshMode,
-    /// Scenes: a JSON list of `{name, objects: [{name, shape, pose}]}`.
+    /// Scenes: a JSON list of `{name, objects: [{name, shape, pose, groups}], effects}`.
     #[arg(long, value_name = "FILE")]
     pub scenes: PathBuf,
     /// Joint vectors: JSON lines `{id, scene, q}`.
@@ -180,9 +180,16 @@ impl<'a> Stage<'a> {
         while scene.objects.iter().any(|object| object.name == robot) {
             robot.push('_');
         }
-        let body = |object: &SceneObject| NewBody::new(object.name.clone(), object.shape.clone(), object.pose);
+        let body = |object: &SceneObject| NewBody {
+            groups: object.groups.clone(),
+            ..NewBody::new(object.name.clone(), object.shape.clone(), object.pose)
+        };
         let bodies = scene.objects.iter().map(body).collect();
-        let made = backend.make_scene(&name, (&robot, model), bodies).await;
+        let declared = scene.effects.iter().map(|pair| {
+            let [a, b] = &pair.between;
+            (a.in_scene(&robot), b.in_scene(&robot), pair.effects)
+        });
+        let made = backend.make_scene(&name, (&robot, model), bodies, declared.collect()).await;
         let MadeScene { revision, bodies } = made.map_err(|mut failed| {
             failed.message = format!("scenes[{index}] ({}): {}", scene.name, failed.message);
             failed
@@ -217,7 +224,8 @@ impl<'a> Stage<'a> {
                 return Err(Failed::failure(counts));
             }
             for (asked, item) in batch.iter().zip(&answer.items) {
-                answers[asked.place] = Some(AnswerLine::of_answer(asked.id, item, answer.revision, names));
+                let line = AnswerLine::of_answer(asked.id, item, answer.revision, names);
+                answers[asked.place] = Some(line.leaving_out(&answer.coverage, names));
             }
             progress.inc(batch.len() as u64);
         }

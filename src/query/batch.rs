@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::context::length;
-use super::declared::{Coverage, coverage, effects_of};
+use super::declared::{Coverage, declared_empty, effects_of};
 use super::motions::Motions;
 use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
@@ -162,10 +162,11 @@ impl<'a> Prepared<'a> {
     where
         'a: 's,
     {
+        let mut empty = Vec::new();
         for place in self.asked.places() {
-            let of_place = coverage(place.snapshot, &asker(&place), context, wanted)?;
-            self.coverage = self.coverage.and(of_place);
+            empty.extend(declared_empty(place.snapshot, &asker(&place), context, wanted)?);
         }
+        self.coverage = Coverage::of(empty, context.max_pairs);
         Ok(self)
     }
 

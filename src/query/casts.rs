@@ -83,7 +83,7 @@ impl<'a> Casts<'a> {
 
     fn cast(&self, one: &Traveller, stop: &dyn Fn() -> bool) -> Result<CastItem, String> {
         let Opponents { snapshot, context, .. } = &self.opponents;
-        if one.body.is_some_and(|body| !body.enabled) {
+        if one.body.is_some_and(|body| !self.opponents.may_meet(body)) {
             return Ok(MetBodies::new(self.request.mode, 1.0, 0).finish());
         }
         let mut met = MetBodies::new(self.request.mode, 1.0, context.max_pairs);
@@ -170,8 +170,8 @@ impl<'a> MovingPairs<'a> {
     pub fn new(snapshot: &'a Snapshot, request: &'a CheckMovingPairs) -> Result<Self, Refused> {
         checked_resolution(request.resolution)?;
         let opponents = Opponents::without_solver(snapshot, &request.context)?;
-        let bodies = request.items.iter().flatten().filter_map(|item| item.moved.body());
-        let coverage = opponents.coverage(bodies, Effects::of(Effect::Motion))?;
+        let pairs = request.items.iter().filter_map(|[a, b]| Some((a.moved.body()?, b.moved.body()?)));
+        let coverage = opponents.coverage_of_pairs(pairs, Effects::of(Effect::Motion))?;
         Ok(Self { opponents, request, coverage })
     }
 

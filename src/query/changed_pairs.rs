@@ -33,7 +33,7 @@ impl Pairs<'_> {
 
     fn walker(&self, id: BodyId) -> Option<&Body> {
         let body = self.snapshot().body(id)?;
-        self.passes(body).then_some(body)
+        (self.passes(body) && !self.snapshot().meets_no_body(body.member())).then_some(&**body)
     }
 }
 

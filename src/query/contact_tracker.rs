@@ -11,7 +11,7 @@ use super::contacts::{
     ContactChanges, ContactEvent, ContactEventKind, ContactQuestion, ContactState, EndReason, NotAdvanced, PairKey,
     Threshold,
 };
-use super::declared::{coverage, effects_of};
+use super::declared::{Coverage, declared_empty, effects_of};
 use super::pairs::Pairs;
 use super::request::{Context, Mode, PairQuery, Wants};
 use super::search::Search;
@@ -74,7 +74,8 @@ impl ContactTracker {
             Pairs::tracked(snapshot, &query, self.question.threshold == Threshold::Touching, self.at.is_none())?;
         let context = &query.context;
         let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Events));
-        let coverage = coverage(snapshot, &Asker::Everybody, context, wanted)?;
+        let empty = declared_empty(snapshot, &Asker::Everybody, context, wanted)?;
+        let coverage = Coverage::of(empty, Context::default().max_pairs);
         let (measured, cost) = self.measure(&pairs, changes.as_ref(), stop)?;
         let suspects = self.suspects(snapshot, changes.as_ref());
         let mut events = self.differences(&pairs, measured, &suspects);

@@ -12,15 +12,18 @@ pub struct Coverage {
     /// Parties whose pairs the scene declares empty and that the question could have been about, the asker's side first where only
     /// one side is; sorted. Their pairs were not looked at: `FREE` says nothing of them.
     pub declared_empty: Vec<(Party, Party)>,
+    /// How many more such pairs of parties there are than the context's `max_pairs` lets the list have.
+    pub not_listed: usize,
 }
 
 impl Coverage {
-    /// What either leaves out.
-    pub(super) fn and(mut self, other: Self) -> Self {
-        self.declared_empty.extend(other.declared_empty);
-        self.declared_empty.sort_unstable();
-        self.declared_empty.dedup();
-        self
+    /// What is left out in any of several worlds, as far as `max_pairs` lets it be listed.
+    pub(super) fn of(mut declared_empty: Vec<(Party, Party)>, max_pairs: usize) -> Self {
+        declared_empty.sort_unstable();
+        declared_empty.dedup();
+        let not_listed = declared_empty.len().saturating_sub(max_pairs);
+        declared_empty.truncate(max_pairs);
+        Self { declared_empty, not_listed }
     }
 }
 
@@ -38,18 +41,18 @@ pub(super) fn effects_of(wants: Wants, margin: f64) -> Effects {
     wanted.chain([Effect::Verdict]).collect()
 }
 
-/// Looks at every declaration that speaks of the asker and of somebody whom the filter lets through.
+/// Whose pairs are left out: looks at every declaration that speaks of the asker and of somebody whom the filter lets through.
 ///
 /// # Errors
 /// [`Refused::NotDeclared`] for the first, in the order of the parties, that permits something, and not all that is wanted.
-pub(super) fn coverage(
+pub(super) fn declared_empty(
     snapshot: &Snapshot,
     asker: &Asker<'_>,
     context: &Context,
     wanted: Effects,
-) -> Result<Coverage, Refused> {
+) -> Result<Vec<(Party, Party)>, Refused> {
     if !snapshot.declares_effects() {
-        return Ok(Coverage::default());
+        return Ok(Vec::new());
     }
     let sieve = Sieve::unchecked(context);
     let filtered = &context.filter.groups;
@@ -80,5 +83,5 @@ pub(super) fn coverage(
             return Err(Refused::NotDeclared { effect, a: own, b: other });
         }
     }
-    Ok(Coverage { declared_empty: empty }.and(Coverage::default()))
+    Ok(empty)
 }

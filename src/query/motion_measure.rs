@@ -206,6 +206,9 @@ impl<'a> Gauge<'a> {
             let bracket = bracket(&one, &other, margin, nearest.free, solver, stop, cost);
             nearest.take(bracket, margin, unclaimed);
         };
+        if robot.parts[part].meets_no_body {
+            return nearest.measured(hidden, self.largest_margin, with_margin);
+        }
         let reach = nearest.reach();
         let stats = snapshot.broad_phase().nearest(&self.placed.bounds[part], reach, |id, _| {
             look(&mut nearest, BodyId(id));

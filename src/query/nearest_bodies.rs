@@ -78,7 +78,7 @@ impl<'a> Neighbours<'a> {
         let Opponents { snapshot, context, .. } = &self.opponents;
         let cut_off = context.cut_off.unwrap_or(f64::INFINITY);
         let mut found = Found { count: self.request.count, cut_off, pairs: Vec::new(), cost: Cost::default() };
-        if asker.body.is_some_and(|body| !body.enabled) {
+        if asker.body.is_some_and(|body| !self.opponents.may_meet(body)) {
             return Ok(found.finish());
         }
         let mut problem = None;

@@ -3,11 +3,11 @@
 
 use super::answer::Refused;
 use super::context::Sieve;
-use super::declared::{Coverage, coverage, effects_of};
+use super::declared::{Coverage, declared_empty, effects_of};
 use super::request::Context;
 use crate::geometry::Shape;
 use crate::narrow_phase::Solver;
-use crate::scene::{Asker, Body, BodyId, Effects, Snapshot};
+use crate::scene::{Asker, Body, BodyId, BodyRef, Effects, Party, Snapshot};
 
 /// A request's context, checked against the scene.
 pub(super) struct Opponents<'a> {
@@ -40,7 +40,38 @@ impl<'a> Opponents<'a> {
             return Ok(Coverage::default());
         }
         let wanted = effects_of(self.context.wants, self.context.margin).and(besides);
-        coverage(self.snapshot, &Asker::Bodies(&bodies), self.context, wanted)
+        let empty = declared_empty(self.snapshot, &Asker::Bodies(&bodies), self.context, wanted)?;
+        Ok(Coverage::of(empty, self.context.max_pairs))
+    }
+
+    /// The same of exactly these pairs.
+    pub fn coverage_of_pairs(
+        &self,
+        pairs: impl Iterator<Item = (BodyId, BodyId)>,
+        besides: Effects,
+    ) -> Result<Coverage, Refused> {
+        if !self.snapshot.declares_effects() {
+            return Ok(Coverage::default());
+        }
+        let wanted = effects_of(self.context.wants, self.context.margin).and(besides);
+        let mut empty = Vec::new();
+        for (a, b) in pairs {
+            // A body that is not there makes its item invalid.
+            let Some((one, two)) = self.snapshot.body(a).zip(self.snapshot.body(b)) else { continue };
+            let Some(declared) = self.snapshot.declared(one.member(), two.member()) else { continue };
+            let [a, b] = [a, b].map(|id| Party::Body(BodyRef::Id(id)));
+            if declared.is_empty() {
+                empty.push((a, b));
+            } else if let Some(effect) = declared.lacking(wanted) {
+                return Err(Refused::NotDeclared { effect, a, b });
+            }
+        }
+        Ok(Coverage::of(empty, self.context.max_pairs))
+    }
+
+    /// Whether the body takes part and may meet another one.
+    pub fn may_meet(&self, own: &Body) -> bool {
+        own.enabled && !self.snapshot.meets_no_body(own.member())
     }
 
     /// No pair has a larger margin; metres.

@@ -121,20 +121,26 @@ impl<'a> Pairs<'a> {
         self.snapshot.unbounded().iter().find(met).copied()
     }
 
-    /// Every body against those with higher ids, so that each pair comes once.
+    /// Every body against those with higher ids, so that each pair comes once. Quiet bodies do not look for others, and are found by
+    /// all of them.
     pub(super) fn everything(&self, search: &mut Search) {
-        for body in self.snapshot.bodies().filter(|b| self.sieve.passes(b)) {
+        let quiet = self.snapshot.quiet_bodies();
+        for body in self.snapshot.bodies().filter(|b| self.passes(b)) {
             if search.is_settled() {
                 return;
             }
+            if self.snapshot.meets_no_body(body.member()) || quiet.has(body.member()) {
+                continue;
+            }
             self.against_bodies(search, &party(body), body.bounds, &mut |other| {
-                (other.id > body.id && self.admits(body, other)).then(|| self.margin(body, other))
+                let is_new = other.id > body.id || quiet.has(other.member());
+                (is_new && self.admits(body, other)).then(|| self.margin(body, other))
             });
         }
     }
 
     fn body(&self, body: &Body, search: &mut Search) {
-        if !body.enabled {
+        if !body.enabled || self.snapshot.meets_no_body(body.member()) {
             return;
         }
         self.against_bodies(search, &party(body), body.bounds, &mut |other| {

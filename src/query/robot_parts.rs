@@ -34,6 +34,8 @@ pub(super) struct LinkPart<'a> {
     pub ball: Ball,
     /// Not a shape of the link's own.
     pub held: Option<&'a Body>,
+    /// Everything that is declared of it and bodies of the scene is empty: it need not look for them.
+    pub meets_no_body: bool,
 }
 
 /// Two parts that are held against each other.
@@ -73,9 +75,10 @@ impl<'a> RobotParts<'a> {
         let model: &RobotModel = &robot.model;
         let mut parts = Vec::with_capacity(model.links().iter().map(|link| link.shapes.len()).sum());
         for (link, l) in (0u32..).zip(model.links()) {
+            let meets_no_body = snapshot.meets_no_body(robot.link(link));
             for (shape_index, of_link) in (0u32..).zip(&l.shapes) {
                 let (shape, in_link, ball) = (&*of_link.shape, &of_link.pose, of_link.ball);
-                parts.push(LinkPart { link, shape_index, shape, in_link, ball, held: None });
+                parts.push(LinkPart { link, shape_index, shape, in_link, ball, held: None, meets_no_body });
             }
         }
         let (self_pairs, held) = (Vec::new(), Vec::new());
@@ -108,7 +111,16 @@ impl<'a> RobotParts<'a> {
         }
         let (shape, in_link) = (&*body.shape, &held.body_in_link);
         let Some(ball) = Ball::around(shape) else { return };
-        self.parts.push(LinkPart { link: held.link, shape_index: 0, shape, in_link, ball, held: Some(body) });
+        let meets_no_body = self.snapshot.meets_no_body(body.member());
+        self.parts.push(LinkPart {
+            link: held.link,
+            shape_index: 0,
+            shape,
+            in_link,
+            ball,
+            held: Some(body),
+            meets_no_body,
+        });
     }
 
     /// Every shape of one link against every shape of the other, for the pairs of links that are held against each other.

@@ -122,7 +122,7 @@ pub(super) fn against_itself(robot: &RobotParts, search: &mut Search, placed: &P
 
 /// Offers the bodies that may matter to any part of a link.
 fn all_against_scene(robot: &RobotParts, search: &mut Search, placed: &Placed) {
-    let parts = 0..robot.parts.len();
+    let parts = (0..robot.parts.len()).filter(|part| !robot.parts[*part].meets_no_body);
     if !search.may_narrow() {
         parts.for_each(|part| against_scene(robot, part, search, placed));
         return;
@@ -148,7 +148,7 @@ fn all_against_scene(robot: &RobotParts, search: &mut Search, placed: &Placed) {
 
 /// Offers the bodies that may matter to one part of a link.
 pub(super) fn against_scene(robot: &RobotParts, part: usize, search: &mut Search, placed: &Placed) {
-    if search.is_settled() {
+    if search.is_settled() || robot.parts[part].meets_no_body {
         return;
     }
     let offers = PartOffers::new(robot, part, placed);

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::party::PartyKey;
+use super::pair_table::parties_of;
+use super::party::{Member, PartyKey};
 use super::{BodyId, Effects, Party, Snapshot};
 
 /// Who is held against the scene.
@@ -36,7 +37,7 @@ impl Snapshot {
         self.effects.len() > 0
     }
 
-    /// Every declaration that speaks of the asker, from its side; of both sides where it is either.
+    /// Every declaration that speaks of the asker, from its side; of both sides where it is either. Costs in proportion to them.
     pub fn declared_of(&self, asker: &Asker<'_>) -> Vec<Declaration> {
         let Some(own) = self.keys_of(asker) else { return Vec::new() };
         let is_own = |key: PartyKey| match &own {
@@ -48,9 +49,44 @@ impl Snapshot {
             let meets = !other.is_of_robot() || is_own(other);
             let is_own_too = matches!(asker, Asker::Robot(..)) && is_robots(other);
             let [own_party, other_party] = [own, other].map(|key| self.party(key, &|_| None));
-            (is_own(own) && meets).then_some(Declaration { own: own_party?, other: other_party?, is_own_too, effects })
+            meets.then_some(Declaration { own: own_party?, other: other_party?, is_own_too, effects })
         };
-        self.effects.halves().filter_map(told).collect()
+        match &own {
+            Keys::All => self.effects.halves().filter(|(own, ..)| is_own(*own)).filter_map(told).collect(),
+            Keys::Some(keys) => {
+                let row = |own: PartyKey| self.effects.of(own).map(move |(other, effects)| (own, other, effects));
+                keys.iter().copied().flat_map(row).filter_map(told).collect()
+            }
+        }
+    }
+
+    /// Whether everything that is declared of a body or link and any body is empty, and something is declared of it and everybody:
+    /// then nobody need look for what it meets. `false` does not say that there is a pair.
+    #[must_use]
+    pub fn meets_no_body(&self, member: Member<'_>) -> bool {
+        if !self.declares_effects() {
+            return false;
+        }
+        let mut with_everybody = false;
+        for (party, _) in parties_of(member) {
+            // No entry that names a robot speaks of a body.
+            for (other, effects) in self.effects.of(party).filter(|(other, _)| !other.is_of_robot()) {
+                if !effects.is_empty() {
+                    return false;
+                }
+                with_everybody |= other == PartyKey::EVERYTHING;
+            }
+        }
+        with_everybody
+    }
+
+    /// Of the groups that are declared empty with themselves the one that is used most: its quiet bodies need not look for each
+    /// other.
+    #[must_use]
+    pub fn quiet_bodies(&self) -> QuietBodies<'_> {
+        let with_itself = |party: &PartyKey| self.effects.get(*party, *party).is_some_and(Effects::is_empty);
+        let groups = self.effects.parties().filter(|party| party.is_group()).filter(with_itself);
+        QuietBodies { snapshot: self, group: groups.max_by_key(|group| (self.groups.uses(*group), *group)) }
     }
 
     /// The parties that speak of the asker; none for a robot that is not there.
@@ -70,6 +106,22 @@ impl Snapshot {
             keys.extend(body.member().many);
         }
         Some(Keys::Some(keys))
+    }
+}
+
+/// Bodies of one group of which no two make a pair that is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct QuietBodies<'a> {
+    snapshot: &'a Snapshot,
+    group: Option<PartyKey>,
+}
+
+impl QuietBodies<'_> {
+    /// Whether the body is in this group and no other, and nothing is declared of it alone: of two such bodies, the entry of the
+    /// group with itself is the most specific one, and it is empty.
+    #[must_use]
+    pub fn has(&self, member: Member<'_>) -> bool {
+        self.group.is_some_and(|group| member.many == [group] && self.snapshot.effects.of(member.one).next().is_none())
     }
 }
 

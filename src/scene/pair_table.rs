@@ -131,6 +131,16 @@ impl<V: Copy> PairTable<V> {
         self.rows.values().flat_map(|row| row.entries.iter().map(|(other, value)| (row.party, *other, *value)))
     }
 
+    /// Whom entries name.
+    pub(super) fn parties(&self) -> impl Iterator<Item = PartyKey> {
+        self.rows.values().map(|row| row.party)
+    }
+
+    /// All entries that name the party: the other sides.
+    pub(super) fn of(&self, party: PartyKey) -> impl Iterator<Item = (PartyKey, V)> {
+        self.row(party).iter().copied()
+    }
+
     fn row(&self, party: PartyKey) -> &[(PartyKey, V)] {
         self.rows.get(party.number()).map_or(&[], |row| &row.entries)
     }

@@ -9,6 +9,7 @@ mod robot_states;
 #[cfg(feature = "grpc")]
 mod states_from_a_daemon;
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
@@ -20,7 +21,7 @@ fn data(name: &str) -> PathBuf {
 }
 
 /// Runs `clearance` with nothing on its standard input.
-fn clearance(arguments: &[&str]) -> Output {
+fn clearance<S: AsRef<OsStr>>(arguments: &[S]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_clearance")).args(arguments).stdin(Stdio::null()).output().unwrap()
 }
 

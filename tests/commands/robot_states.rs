@@ -11,14 +11,19 @@ use crate::{clearance, data, json_lines, number};
 /// Metres within which a minimum has to be the truth's.
 const CLOSE: f64 = 1e-9;
 
+/// What asks for the 400 states in the scenes of a file.
+pub fn arguments(scenes: &str) -> Vec<String> {
+    let file = |name: &str| data("robot-ur5").join(name).to_str().unwrap().to_owned();
+    let (urdf, srdf, queries) = (file("ur5.urdf"), file("ur5.srdf"), file("queries.jsonl"));
+    ["states", "--robot", &urdf, "--srdf", &srdf, "--mesh", "hull", "--scenes", scenes, "--states", &queries]
+        .map(str::to_owned)
+        .to_vec()
+}
+
 /// What the command prints for the 400 states, with more flags.
 pub fn states(more: &[&str]) -> Vec<u8> {
-    let file = |name: &str| data("robot-ur5").join(name).to_str().unwrap().to_owned();
-    let (urdf, srdf) = (file("ur5.urdf"), file("ur5.srdf"));
-    let (scenes, queries) = (file("scenes.json"), file("queries.jsonl"));
-    let mut arguments = vec!["states", "--robot", &urdf, "--srdf", &srdf, "--mesh", "hull"];
-    arguments.extend(["--scenes", &scenes, "--states", &queries]);
-    arguments.extend(more);
+    let mut arguments = arguments(data("robot-ur5").join("scenes.json").to_str().unwrap());
+    arguments.extend(more.iter().map(|flag| (*flag).to_owned()));
     let output = clearance(&arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     output.stdout

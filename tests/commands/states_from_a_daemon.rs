@@ -3,8 +3,10 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
-use crate::clearance;
-use crate::robot_states::states;
+use serde_json::{Value, json};
+
+use crate::robot_states::{arguments, states};
+use crate::{clearance, data, json_lines};
 
 /// A daemon on a free port; it ends with the test.
 struct Daemon {
@@ -50,6 +52,59 @@ fn a_daemon_gives_the_same_bytes() {
         let there = states(&["--want", want, "--server", &daemon.address]);
         assert!(here == there, "--want {want}");
     }
+}
+
+/// Oracle: the same scenes without declarations. What is declared empty is left out, and said so; what is wanted beyond what is
+/// declared is refused with its name; through the library and a daemon alike.
+#[test]
+fn a_scene_file_declares_effects() {
+    let daemon = Daemon::start();
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = folder.path().join("scenes.json");
+    let mut document: Value = serde_json::from_slice(&std::fs::read(data("robot-ur5/scenes.json")).unwrap()).unwrap();
+    let ask = |document: &Value, more: &[&str]| {
+        std::fs::write(&scenes, document.to_string()).unwrap();
+        let mut arguments = arguments(scenes.to_str().unwrap());
+        arguments.extend(more.iter().map(|flag| (*flag).to_owned()));
+        let output = clearance(&arguments);
+        let lines = output.status.success().then(|| json_lines(&output.stdout));
+        lines.ok_or_else(|| String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let both = |document: &Value, more: &[&str]| {
+        let here = ask(document, more);
+        let there = ask(document, &[more, &["--server", &daemon.address]].concat());
+        if let (Ok(here), Ok(there)) = (&here, &there) {
+            assert_eq!(here, there);
+        }
+        (here, there)
+    };
+    let plain = ask(&document, &["--want", "verdict"]).unwrap();
+    for scene in document.as_array_mut().unwrap() {
+        for object in scene["objects"].as_array_mut().unwrap() {
+            object["groups"] = json!(["all"]);
+        }
+        scene["effects"] = json!([
+            {"between": ["robot", {"group": "all"}], "effects": []},
+            {"between": ["robot", "robot"], "effects": ["verdict"]},
+        ]);
+    }
+    let verdict = both(&document, &["--want", "verdict"]).0.unwrap();
+    let mut differ = 0;
+    for (line, plain) in verdict.iter().zip(&plain) {
+        assert_eq!(line["declared_empty"], json!([["robot", "all"]]));
+        // Collisions with itself stay, those with objects are not looked at.
+        let of_itself = line["verdict"] == "COLLISION";
+        assert!(!of_itself || plain["verdict"] == "COLLISION");
+        differ += usize::from(line["verdict"] != plain["verdict"]);
+    }
+    assert!(differ > 50 && plain.iter().all(|line| line.get("declared_empty").is_none()), "{differ}");
+    let (here, there) = both(&document, &["--want", "distance"]);
+    for refused in [here.unwrap_err(), there.unwrap_err()] {
+        let pair = "the pair of robot robot and robot robot is declared without the effect `distance`, which is wanted";
+        assert!(refused.contains(pair), "{refused}");
+    }
+    document[1]["effects"][0]["effects"] = json!(["colour"]);
+    assert!(ask(&document, &[]).unwrap_err().contains("scenes[1].effects[0].effects[0]: is \"colour\""));
 }
 
 #[test]

@@ -6,13 +6,15 @@ use std::sync::Arc;
 
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
+use clearance::narrow_phase::Cost;
 use clearance::query::{
-    Answer, CastMode, CastShapes, Casts, CheckMotions, CheckStates, Clearance, ClearanceOf, ContactQuestion,
-    ContactTracker, Context, DEFAULT_RESOLUTION, Filter, Find, ItemBatch, Mode, Motions, Moved, Mover, NearestBodies,
-    Neighbours, NotAdvanced, Overlay, PairQuery, Prepared, Refused, Side, Subject, Verdict, Wants, Way, World, Worlds,
+    Answer, CastMode, CastShapes, CastVerdict, Casts, CheckMotions, CheckMovingPairs, CheckStates, Clearance,
+    ClearanceOf, ContactQuestion, ContactTracker, Context, DEFAULT_RESOLUTION, Filter, Find, ItemBatch, Mode, Motions,
+    Moved, Mover, MovingPairs, NearestBodies, Neighbours, NotAdvanced, Overlay, PairQuery, Prepared, Refused, Side,
+    Subject, Verdict, Wants, Way, World, Worlds,
 };
 use clearance::robot::{ModelOptions, RobotModel};
-use clearance::scene::{BodyId, Edit, Effect, Effects, Epoch, NewBody, Party, Revision, Scene, Snapshot};
+use clearance::scene::{BodyId, BodyRef, Edit, Effect, Effects, Epoch, NewBody, Party, Revision, Scene, Snapshot};
 
 fn place(x: f64, y: f64, z: f64) -> Pose {
     Pose::new(Vec3::new(x, y, z), Quaternion::IDENTITY).unwrap()
@@ -296,5 +298,77 @@ fn a_closed_scene_is_open_where_it_says_so() {
     let both = answer.items[0].pairs.iter().flat_map(|pair| [&pair.a, &pair.b]);
     assert!(both.into_iter().all(|side| kind(&snapshot, side) == "crates"));
     let robot = in_states(&snapshot, with(wants)).unwrap();
-    assert!(robot.items.iter().all(|item| item.verdict == Verdict::Free && item.cost.pairs == 0));
+    // Nothing is looked for, either: not even in the broad phase.
+    assert!(robot.items.iter().all(|item| item.verdict == Verdict::Free && item.cost == Cost::default()));
+    let shelf = collide(&snapshot, vec![Subject::Body(BodyId(2))], with(wants)).unwrap();
+    assert_eq!((shelf.items[0].verdict, shelf.cost), (Verdict::Free, Cost::default()));
+    let moved = Mover { moved: Moved::Body(BodyId(2)), start: None, way: Way::To(place(0.0, 0.0, 1.0)) };
+    let cast = CastShapes {
+        items: vec![moved],
+        mode: CastMode::All,
+        resolution: DEFAULT_RESOLUTION,
+        context: Context::default(),
+    };
+    let cast = Casts::new(&snapshot, &cast).unwrap().answer_all(&|| false);
+    assert_eq!(cast.items[0].cost, Cost::default());
+    let near = NearestBodies { items: vec![Subject::Body(BodyId(2))], count: 3, context: Context::default() };
+    let near = Neighbours::new(&snapshot, &near).unwrap().answer_all(&|| false);
+    assert_eq!((near.items[0].nearest.len(), near.items[0].cost), (0, Cost::default()));
+}
+
+#[test]
+fn bodies_that_are_quiet_among_themselves_do_not_walk_the_tree() {
+    let plain = store().snapshot();
+    let quiet = declared(&[declare(group("crates"), group("crates"), &[])]);
+    let question = |snapshot: &Snapshot| collide(snapshot, vec![Subject::All], with(Wants::VERDICT)).unwrap();
+    let (plain, quiet) = (question(&plain), question(&quiet));
+    assert!(quiet.cost.nodes < plain.cost.nodes, "{} {}", quiet.cost.nodes, plain.cost.nodes);
+    assert!(quiet.items[0].pairs.len() < plain.items[0].pairs.len());
+}
+
+#[test]
+fn what_is_left_out_is_listed_as_far_as_pairs_are() {
+    let empty = declared(&[
+        declare(group("crates"), group("shelves"), &[]),
+        declare(arm(), group("shelves"), &[]),
+        declare(arm(), arm(), &[]),
+    ]);
+    let whole = in_states(&empty, with(Wants::VERDICT)).unwrap().coverage;
+    assert_eq!((whole.declared_empty.len(), whole.not_listed), (2, 0));
+    let cut = in_states(&empty, Context { max_pairs: 1, ..with(Wants::VERDICT) }).unwrap().coverage;
+    assert_eq!((cut.declared_empty.as_slice(), cut.not_listed), (&whole.declared_empty[..1], 1));
+    let none = in_states(&empty, Context { max_pairs: 0, ..with(Wants::VERDICT) }).unwrap().coverage;
+    assert_eq!((none.declared_empty.len(), none.not_listed), (0, 2));
+}
+
+#[test]
+fn moving_pairs_need_what_is_declared_of_exactly_these_two() {
+    let crate_and_shelf = [BodyId(1), BodyId(2)];
+    let ask = |snapshot: &Snapshot, ids: [BodyId; 2]| {
+        let item = ids.map(|id| Mover { moved: Moved::Body(id), start: None, way: Way::Still });
+        let question =
+            CheckMovingPairs { items: vec![item], resolution: DEFAULT_RESOLUTION, context: Context::default() };
+        MovingPairs::new(snapshot, &question).map(|pairs| pairs.answer_all(&|| false))
+    };
+    let by_id = |id: BodyId| Party::Body(BodyRef::Id(id));
+    let snapshot = declared(&[
+        declare(group("crates"), group("crates"), &[Effect::Depth]),
+        declare(group("crates"), group("shelves"), &[]),
+    ]);
+    let two_crates = [BodyId(1), BodyId(3)];
+    assert_eq!(
+        ask(&snapshot, two_crates).err(),
+        not_declared(Effect::Motion, by_id(two_crates[0]), by_id(two_crates[1]))
+    );
+    // That crates and crates have no motion does not matter to a crate and a shelf.
+    let empty = ask(&snapshot, crate_and_shelf).unwrap();
+    assert_eq!(empty.items[0].verdict, CastVerdict::Clear);
+    assert_eq!(empty.coverage.declared_empty, [(by_id(crate_and_shelf[0]), by_id(crate_and_shelf[1]))]);
+    let shelves = ask(&snapshot, [BodyId(2), BodyId(4)]).unwrap();
+    assert!(shelves.coverage.declared_empty.is_empty());
+    let allowed = declared(&[
+        declare(group("crates"), group("shelves"), &[]),
+        declare(by_id(BodyId(1)), by_id(BodyId(2)), &[Effect::Motion]),
+    ]);
+    assert_eq!(ask(&allowed, crate_and_shelf).unwrap().items[0].verdict, CastVerdict::Hit);
 }

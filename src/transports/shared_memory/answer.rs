@@ -51,6 +51,9 @@ pub fn message(frame: &Frame, answer: &Answer, wants: Wants, motions: bool) -> V
         let names: Vec<String> = left_out.iter().flat_map(|(a, b)| [a.to_string(), b.to_string()]).collect();
         writer.texts(kind::DECLARED_EMPTY, names.iter().map(String::as_str));
     }
+    if answer.coverage.not_listed > 0 {
+        writer.integers(kind::DECLARED_EMPTY_NOT_LISTED, [answer.coverage.not_listed as u64]);
+    }
     if motions {
         motion_columns(&mut writer, items);
     }

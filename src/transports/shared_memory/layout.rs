@@ -259,6 +259,7 @@ pub mod kind {
 
         52 RESPONSE 1 x 1 "of any rpc: its response message, protobuf";
         53 DECLARED_EMPTY 1 x 1 "pairs that the scene declares empty and that no item says anything about: the names of both sides, one after the other, UTF-8, a zero byte after each; absent: none";
+        54 DECLARED_EMPTY_NOT_LISTED 8 x 1 "how many more such pairs there are than `max_pairs` lets that column have, one unsigned number; absent: none";
 
         64 NEAREST_A_KIND 1 x 1 "sides wanted, side A of the nearest pair: 0 no pair, 1 a link, 2 the question's shape, 3 a body";
         65 NEAREST_A_ID 8 x 1 "the same: index of the link, id of the body, unsigned";

@@ -173,6 +173,12 @@ impl Reply {
         let texts = self.sections().and_then(|sections| sections.texts(kind::DECLARED_EMPTY).ok()).unwrap_or_default();
         texts.as_chunks::<2>().0.iter().map(|pair| pair.map(str::to_owned)).collect()
     }
+
+    /// How many more such pairs there are than are listed.
+    #[must_use]
+    pub fn declared_empty_not_listed(&self) -> u64 {
+        self.integers(kind::DECLARED_EMPTY_NOT_LISTED).and_then(|column| column.first().copied()).unwrap_or(0)
+    }
 }
 
 #[cfg(test)]

@@ -227,11 +227,14 @@ class ItemAnswers(list[ItemAnswer]):
     added: dict[tuple[int, int], str]
     #: Pairs that the scene declares empty: no item says anything of them.
     declared_empty: tuple[scene.PartyPair, ...]
+    #: How many more such pairs there are than are listed.
+    declared_empty_not_listed: int
 
     @classmethod
     def of(cls, answer: messages.Answer) -> ItemAnswers:
         answers = cls(ItemAnswer.of(item) for item in answer.items)
         answers.declared_empty = tuple(answer.coverage.declared_empty)
+        answers.declared_empty_not_listed = answer.coverage.not_listed
         answers.added = {(body.overlay, body.id): body.name for body in answer.added_bodies}
         return answers
 
@@ -273,6 +276,8 @@ class StatesAnswer:
     out_of_time: bool
     #: Pairs that the scene declares empty: no verdict says anything of them.
     declared_empty: tuple[scene.PartyPair, ...]
+    #: How many more such pairs there are than are listed.
+    declared_empty_not_listed: int
     cost: Cost = field(repr=False)
 
     @property
@@ -310,6 +315,7 @@ class StatesAnswer:
             stopped_at=answer.stopped_at if answer.HasField("stopped_at") else None,
             out_of_time=answer.out_of_time,
             declared_empty=tuple(answer.coverage.declared_empty),
+            declared_empty_not_listed=answer.coverage.not_listed,
             cost=Cost.of(answer.cost),
         )
 

@@ -81,7 +81,7 @@ _REQUEST, _RESPONSE, _SECTION = (
 )
 _NAMES = {kind: (name, element, per_row) for name, (kind, element, per_row) in COLUMNS.items()}
 #: Columns of integers; the others of eight bytes are doubles.
-_INTEGERS = {"ignore", "subject_ids", "hit_bodies", "grazed_bodies"} | {
+_INTEGERS = {"declared_empty_not_listed", "ignore", "subject_ids", "hit_bodies", "grazed_bodies"} | {
     f"{pair}_{side}_id" for pair in ("nearest", "pair") for side in "ab"
 }
 
@@ -105,10 +105,13 @@ class Answer(Mapping[str, np.ndarray]):
         columns: dict[str, np.ndarray],
         problems: dict[int, str],
         declared_empty: list[tuple[str, str]],
+        declared_empty_not_listed: int,
     ):
         self._columns = columns
         #: Pairs that the scene declares empty, by the names of their sides: the answer says nothing of them.
         self.declared_empty = declared_empty
+        #: How many more such pairs there are than are listed.
+        self.declared_empty_not_listed = declared_empty_not_listed
         #: Which state of the scene was asked.
         self.epoch, self.revision = int(header["epoch"]), int(header["revision"])
         flags = int(header["flags"])
@@ -428,7 +431,8 @@ def _read(message: bytes, nonce: bytes) -> Optional[Answer]:
     texts = columns.pop("problem_texts", np.empty(0, dtype="u1")).tobytes().decode().split("\0")
     items = columns.pop("problem_items", np.empty(0, dtype="<u4"))
     sides = columns.pop("declared_empty", np.empty(0, dtype="u1")).tobytes().decode().split("\0")
-    return Answer(header, columns, dict(zip(items.tolist(), texts)), list(zip(sides[:-1:2], sides[1::2])))
+    left = int(columns.pop("declared_empty_not_listed", [0])[0])
+    return Answer(header, columns, dict(zip(items.tolist(), texts)), list(zip(sides[:-1:2], sides[1::2])), left)
 
 
 def _refusal(code: int, columns: dict[str, np.ndarray]) -> ClearanceError:

@@ -1,7 +1,7 @@
 //! How does a client change a scene, for everybody or for one question?
 
 use crate::geometry::{Pose, Shape};
-use crate::scene::{BodyRef, NewBody};
+use crate::scene::{BodyRef, Effects, NewBody, Party};
 use crate::transports::wire::{to_proto, v1};
 
 /// A change of a scene.
@@ -56,6 +56,15 @@ pub enum RemoteEdit {
         /// Its name in the scene.
         robot: String,
     },
+    /// What may be asked of pairs from now on.
+    DeclareEffects {
+        /// One side.
+        a: Party,
+        /// The other side.
+        b: Party,
+        /// None: nothing is declared of exactly these two any more.
+        effects: Option<Effects>,
+    },
     /// Any other, as a message: groups, layers, entries for pairs, voxels.
     Message(v1::Edit),
 }
@@ -108,6 +117,7 @@ pub(super) fn edit(edit: &RemoteEdit) -> v1::Edit {
             Kind::MoveRobot(v1::MoveRobot { robot: robot.clone(), base: Some(to_proto::pose(base)) })
         }
         RemoteEdit::RemoveRobot { robot } => Kind::RemoveRobot(v1::RemoveRobot { robot: robot.clone() }),
+        RemoteEdit::DeclareEffects { a, b, effects } => Kind::DeclareEffects(to_proto::declare_effects(a, b, *effects)),
         RemoteEdit::Message(message) => return message.clone(),
     };
     v1::Edit { kind: Some(kind) }

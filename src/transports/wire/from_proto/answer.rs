@@ -40,7 +40,8 @@ pub(super) fn coverage(message: Option<&v1::Coverage>) -> Result<Coverage, NotAn
     let party = |side: Option<&v1::Party>| party(&Path::root("coverage"), side).map_err(unknown);
     let pair = |pair: &v1::PartyPair| Ok((party(pair.a.as_ref())?, party(pair.b.as_ref())?));
     let declared_empty = message.into_iter().flat_map(|message| &message.declared_empty).map(pair);
-    Ok(Coverage { declared_empty: declared_empty.collect::<Result<_, NotAnAnswer>>()? })
+    let not_listed = message.map_or(0, |message| message.not_listed as usize);
+    Ok(Coverage { declared_empty: declared_empty.collect::<Result<_, NotAnAnswer>>()?, not_listed })
 }
 
 fn item(item: &v1::ItemAnswer) -> Result<ItemAnswer, NotAnAnswer> {

@@ -17,6 +17,12 @@ pub(super) fn party(party: &Party) -> v1::Party {
     v1::Party { kind: Some(kind) }
 }
 
+/// What may be asked of the pairs of two parties.
+#[must_use]
+pub fn declare_effects(a: &Party, b: &Party, declared: Option<Effects>) -> v1::DeclareEffects {
+    v1::DeclareEffects { a: Some(party(a)), b: Some(party(b)), effects: declared.map(effects) }
+}
+
 pub(super) fn effects(effects: Effects) -> v1::Effects {
     v1::Effects { effects: effects.each().map(|each| effect(each).into()).collect() }
 }
@@ -39,5 +45,6 @@ fn effect(effect: Effect) -> v1::Effect {
 pub(super) fn coverage(coverage: &Coverage) -> Option<v1::Coverage> {
     let pair = |(a, b): &(Party, Party)| v1::PartyPair { a: Some(party(a)), b: Some(party(b)) };
     let declared_empty: Vec<_> = coverage.declared_empty.iter().map(pair).collect();
-    (!declared_empty.is_empty()).then_some(v1::Coverage { declared_empty })
+    let not_listed = coverage.not_listed as u64;
+    (!declared_empty.is_empty() || not_listed > 0).then_some(v1::Coverage { declared_empty, not_listed })
 }

@@ -25,6 +25,7 @@ pub use cast_question::{
     cast_rays_request, cast_shapes_request, check_moving_pairs_request, nearest_bodies_request, overlap_request,
 };
 pub use contact::contact_messages;
+pub use declared::declare_effects;
 pub use error::{ErrorCard, query_error, reason_name};
 pub use estimate::{estimate_request, estimate_response};
 pub use geometry::{pose, shape};
