@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 #define CLEARANCE_MAGIC {0x43, 0x4c, 0x52, 0x53, 0x48, 0x4d, 0x0d, 0x0a}
-#define CLEARANCE_ABI_HASH UINT64_C(0x28291629a0787954)
+#define CLEARANCE_ABI_HASH UINT64_C(0x24304ff8578aafb9)
 #define CLEARANCE_VERSION 1
 #define CLEARANCE_ALIGNMENT 64
 #define CLEARANCE_MOST_SECTIONS 64
@@ -175,6 +175,7 @@ enum clearance_section_kind {
     CLEARANCE_STATES = 51, /* of motions: states that pairs were measured in, count, a double; NaN: not run */
     CLEARANCE_RESPONSE = 52, /* of any rpc: its response message, protobuf */
     CLEARANCE_DECLARED_EMPTY = 53, /* pairs that the scene declares empty and that no item says anything about: the names of both sides, one after the other, UTF-8, a zero byte after each; absent: none */
+    CLEARANCE_DECLARED_EMPTY_NOT_LISTED = 54, /* how many more such pairs there are than `max_pairs` lets that column have, one unsigned number; absent: none */
     CLEARANCE_NEAREST_A_KIND = 64, /* sides wanted, side A of the nearest pair: 0 no pair, 1 a link, 2 the question's shape, 3 a body */
     CLEARANCE_NEAREST_A_ID = 65, /* the same: index of the link, id of the body, unsigned */
     CLEARANCE_NEAREST_A_SHAPE = 66, /* the same: which shape of the link, unsigned */

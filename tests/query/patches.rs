@@ -8,9 +8,11 @@ use std::sync::Arc;
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::narrow_phase::{ContactPatch, Cost, Goal, PatchGoal, contact_patch, separation};
 use clearance::query::{
-    Answers, ContactQuestion, ContactTracker, Context, ItemAnswer, ItemBatch, Mode, NearestBodies, NearestItem,
-    Neighbours, PairAnswer, PairQuery, Prepared, Refused, Side, Subject, Threshold, Verdict, Wants,
+    Answers, CheckMotions, CheckStates, Clearance, ClearanceOf, ContactQuestion, ContactTracker, Context, Find,
+    ItemAnswer, ItemBatch, Mode, Motions, NearestBodies, NearestItem, Neighbours, PairAnswer, PairQuery, Prepared,
+    Refused, Side, Subject, Threshold, Verdict, Wants,
 };
+use clearance::robot::{ModelOptions, RobotModel};
 use clearance::scene::{Body, Edit, Epoch, NewBody, Scene, Snapshot};
 
 fn place(x: f64, y: f64, z: f64) -> Pose {
@@ -196,6 +198,66 @@ fn patches_are_the_kernels_own_and_change_nothing_else() {
         }
     }
     assert!(corners > 100 && edges > 100 && points > 100 && none > 10, "{corners} {edges} {points} {none}");
+}
+
+#[test]
+fn clearances_have_patches_of_pairs_that_are_not_proved_apart() {
+    let scene = pile();
+    let snapshot = &scene.snapshot();
+    let ask = |wants: Wants, margin: f64| {
+        let subjects = PairQuery { items: vec![Subject::All], mode: Mode::All, context: with(wants, margin) };
+        let question = Clearance { subjects: ClearanceOf::Subjects(subjects), within: 0.1 };
+        Prepared::clearance(&**snapshot, &question).unwrap().answer(&|| false).items.remove(0)
+    };
+    let all = Wants { witness: true, depth: true, ..Wants::VERDICT };
+    for margin in [0.0, 0.05] {
+        let (plain, asked) = (ask(all, margin), ask(Wants { patch: true, ..all }, margin));
+        let (mut with_patch, mut without) = (0, 0);
+        for pair in &asked.pairs {
+            assert_eq!(pair.patch.is_some(), pair.verdict != Verdict::Free, "{pair:?}");
+            match &pair.patch {
+                Some(patch) => assert_eq!(**patch, by_hand(snapshot, pair, margin)),
+                None => without += 1,
+            }
+            with_patch += usize::from(pair.patch.is_some());
+        }
+        assert!(with_patch > 30 && without > 5, "{with_patch} {without}");
+        assert_eq!(stripped(asked), plain);
+    }
+}
+
+/// A box on a slide goes down onto a table. Oracle: the same state asked as a state.
+#[test]
+fn a_motion_has_the_patch_of_the_state_that_it_meets_in() {
+    let urdf = r#"<robot name="press"><link name="frame"/>
+      <link name="die"><collision><geometry><box size="0.2 0.4 0.1"/></geometry></collision></link>
+      <joint name="slide" type="prismatic"><parent link="frame"/><child link="die"/><axis xyz="0 0 1"/>
+        <limit lower="-2" upper="2" velocity="1" effort="1"/></joint></robot>"#;
+    let model = RobotModel::from_urdf(urdf, None, &mut |_| Err("no meshes".to_owned()), &ModelOptions::default());
+    let mut scene = table();
+    let base = place(0.0, 0.5, 0.0);
+    let arm = Edit::AddRobot { name: "arm".to_owned(), model: Arc::new(model.unwrap()), base };
+    scene.apply(&[arm], None).unwrap();
+    let snapshot = &*scene.snapshot();
+    let ends = [1.5, 0.51];
+    let question = CheckMotions {
+        robot: "arm".to_owned(),
+        positions: ends.to_vec(),
+        motions: Motions::Edges,
+        mode: Mode::All,
+        find: Find::FirstContact,
+        resolution: 1e-3,
+        max_states: CheckMotions::DEFAULT_MAX_STATES,
+        context: with(PATCH, 0.0),
+    };
+    let item = Prepared::check_motions(snapshot, &question).unwrap().answer(&|| false).items.remove(0);
+    let [_, at] = item.motion.unwrap().reached.unwrap();
+    let patch = item.nearest.unwrap().patch.unwrap();
+    assert_eq!(patch.polygon().len(), 4);
+    let positions = vec![if at == 1.0 { ends[1] } else { ends[0] + at * (ends[1] - ends[0]) }];
+    let state = CheckStates { robot: "arm".to_owned(), positions, mode: Mode::All, context: with(PATCH, 0.0) };
+    let state = Prepared::check_states(snapshot, &state).unwrap().answer(&|| false).items.remove(0);
+    assert_eq!(state.nearest.unwrap().patch, Some(patch));
 }
 
 /// Ten boxes overlap one; the nearest is met first, as its box is no farther and its id the least, and the others never lead.

@@ -97,6 +97,8 @@ class SharedMemoryTest(unittest.TestCase):
         try:
             answer = self.door.check_states("cell", "arm", positions)
             self.assertEqual(answer.declared_empty, [("robot arm", f"body {block.id}")])
+            cut = self.door.check_states("cell", "arm", positions, max_pairs=0)
+            self.assertEqual((cut.declared_empty, cut.declared_empty_not_listed), ([], 1))
         finally:
             self.scene.apply(clearance.declare_effects(arm, other, None))
 

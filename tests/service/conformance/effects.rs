@@ -94,6 +94,10 @@ async fn pairs_declared_empty_are_left_out_and_listed(door: &impl Door) {
     let listed = after.coverage.unwrap().declared_empty;
     let pair = |a, b| v1::PartyPair { a: group(a), b: group(b) };
     assert_eq!(listed, [pair("crates", "shelves")]);
+    let short = v1::Context { max_pairs: Some(0), ..context() };
+    let cut = door.distance(v1::DistanceRequest { context: Some(short), ..distance(vec![body(named("shelf"))]) }).await;
+    let cut = cut.unwrap().coverage.unwrap();
+    assert_eq!((cut.declared_empty.len(), cut.not_listed), (0, 1));
     let near = v1::NearestBodiesRequest { context: Some(context()), items: vec![body(named("shelf"))], count: 3 };
     let near = door.nearest_bodies(near).await.unwrap();
     assert!(near.items[0].nearest.is_empty());

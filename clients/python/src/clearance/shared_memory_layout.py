@@ -4,7 +4,7 @@ Made from src/transports/shared_memory/layout.rs by `cargo test --test service h
 """
 
 MAGIC = bytes.fromhex("434c5253484d0d0a")
-ABI_HASH = 0x28291629a0787954
+ABI_HASH = 0x24304ff8578aafb9
 VERSION = 1
 ALIGNMENT = 64
 MOST_SECTIONS = 64
@@ -120,6 +120,7 @@ COLUMNS = {
     "states": (51, 8, 1),
     "response": (52, 1, 1),
     "declared_empty": (53, 1, 1),
+    "declared_empty_not_listed": (54, 8, 1),
     "nearest_a_kind": (64, 1, 1),
     "nearest_a_id": (65, 8, 1),
     "nearest_a_shape": (66, 4, 1),

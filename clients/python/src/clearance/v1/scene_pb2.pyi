@@ -267,10 +267,12 @@ class PartyPair(_message.Message):
     def __init__(self, a: _Optional[_Union[Party, _Mapping]] = ..., b: _Optional[_Union[Party, _Mapping]] = ...) -> None: ...
 
 class Coverage(_message.Message):
-    __slots__ = ("declared_empty",)
+    __slots__ = ("declared_empty", "not_listed")
     DECLARED_EMPTY_FIELD_NUMBER: _ClassVar[int]
+    NOT_LISTED_FIELD_NUMBER: _ClassVar[int]
     declared_empty: _containers.RepeatedCompositeFieldContainer[PartyPair]
-    def __init__(self, declared_empty: _Optional[_Iterable[_Union[PartyPair, _Mapping]]] = ...) -> None: ...
+    not_listed: int
+    def __init__(self, declared_empty: _Optional[_Iterable[_Union[PartyPair, _Mapping]]] = ..., not_listed: _Optional[int] = ...) -> None: ...
 
 class SceneSummary(_message.Message):
     __slots__ = ("name", "epoch", "revision", "bodies", "robots", "broad_phase")
