@@ -5,11 +5,14 @@ use std::ops::Range;
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::context::length;
 use super::declared::{Coverage, coverage, effects_of};
+#[cfg(feature = "effect-motion")]
 use super::motions::Motions;
+#[cfg(not(feature = "effect-motion"))]
+use super::no_motions::Motions;
 use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
 use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Mode, PairQuery, Subject};
-use super::states::States;
+use super::states::{Scratch, States};
 use crate::narrow_phase::Cost;
 use crate::scene::{Asker, BodyId, Effect, Effects};
 
@@ -25,7 +28,8 @@ pub struct Prepared<'a> {
 
 enum Question<'a> {
     States(States<'a>),
-    Motions(Motions<'a>),
+    /// In a box, so that what the others take is the same in a build without motions.
+    Motions(Box<Motions<'a>>),
     Pairs(Pairs<'a>),
 }
 
@@ -58,8 +62,10 @@ impl<'a> Prepared<'a> {
     pub fn check_motions(asked: impl Into<Asked<'a>>, request: &'a CheckMotions) -> Result<Self, Refused> {
         let context = &request.context;
         let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Motion));
-        Self::in_each(asked.into(), request.mode, |world| Ok(Question::Motions(Motions::new(world, request)?)))?
-            .of_robot(&request.robot, context, wanted)
+        Self::in_each(asked.into(), request.mode, |world| {
+            Ok(Question::Motions(Box::new(Motions::new(world, request)?)))
+        })?
+        .of_robot(&request.robot, context, wanted)
     }
 
     /// Which pairs touch?
@@ -190,20 +196,24 @@ impl<'a> Prepared<'a> {
     pub fn run(&self, range: Range<usize>, stop: &dyn Fn() -> bool) -> Part {
         // Memory that states use again, of the world that the last item was asked in.
         let mut scratch = None;
-        self.run_items(range, stop, |i| {
-            let number = self.asked.number(i);
-            match &self.questions[number] {
-                Question::States(states) => {
-                    let (_, memory) = match scratch.take() {
-                        Some(of) if matches!(of, (world, _) if world == number) => scratch.insert(of),
-                        _ => scratch.insert((number, states.scratch())),
-                    };
-                    states.answer(i, memory, stop)
-                }
-                Question::Motions(motions) => motions.answer(i, stop),
-                Question::Pairs(pairs) => pairs.answer(i, stop),
+        self.run_items(range, stop, |i| self.item(i, &mut scratch, stop))
+    }
+
+    /// Not within its caller, so that both are compiled alike whether there is code for motions or not.
+    #[inline(never)]
+    fn item(&self, i: usize, scratch: &mut Option<(usize, Scratch)>, stop: &dyn Fn() -> bool) -> ItemAnswer {
+        let number = self.asked.number(i);
+        match &self.questions[number] {
+            Question::States(states) => {
+                let (_, memory) = match scratch.take() {
+                    Some(of) if matches!(of, (world, _) if world == number) => scratch.insert(of),
+                    _ => scratch.insert((number, states.scratch())),
+                };
+                states.answer(i, memory, stop)
             }
-        })
+            Question::Motions(motions) => motions.answer(i, stop),
+            Question::Pairs(pairs) => pairs.answer(i, stop),
+        }
     }
 
     fn run_items(

@@ -17,6 +17,7 @@ pub(super) struct Opponents<'a> {
 }
 
 impl<'a> Opponents<'a> {
+    #[inline(never)]
     pub fn new(snapshot: &'a Snapshot, context: &'a Context) -> Result<Self, Refused> {
         Ok(Self { snapshot, context, sieve: Sieve::new(snapshot, context)? })
     }
@@ -50,6 +51,7 @@ impl<'a> Opponents<'a> {
     }
 
     /// The margin of a body against something that is not in the scene, or against the body `own`, if the pair is looked at; metres.
+    #[inline(never)]
     pub fn margin(&self, own: Option<&Body>, other: &Body) -> Option<f64> {
         if !self.sieve.passes(other) {
             return None;
