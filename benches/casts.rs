@@ -3,7 +3,7 @@
 //! Scenes: `count` boxes, balls, cylinders, capsules and hulls in a cube, as dense as one body in 3 m^3; and a terrain of triangles. Both sides answer the
 //! first hit of every ray or motion with a normal, one thread. Ours proves each answer, parry's is an estimate; where both are sure
 //! they have to agree. They take turns, and the least of the rounds counts, so that a busy machine slows both alike.
-//! `cargo bench --no-default-features --bench casts`, about a minute.
+//! `cargo bench --no-default-features --features effect-motion --bench casts`, about a minute.
 
 use std::hint::black_box;
 use std::sync::Arc;

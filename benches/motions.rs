@@ -1,6 +1,6 @@
 //! What certainty about a motion costs, beside checking it at fixed steps, and what those miss.
 //!
-//! `cargo bench --no-default-features --bench motions`, half a minute. The motions are those of `tests/query/edges.rs`: a
+//! `cargo bench --no-default-features --features effect-motion --bench motions`, half a minute. The motions are those of `tests/query/edges.rs`: a
 //! UR5 between its starts, goals and states near them, in 21 scenes. Truth for what is missed: a proved collision, or one
 //! that a dense sampling of 4096 steps meets. All ways run in turn, round after round; a figure is the least over the rounds.
 

@@ -41,6 +41,9 @@ impl PartyName {
     }
 }
 
+/// Makes a party of its name.
+type Named = fn(String) -> PartyName;
+
 /// `[{between: [PARTY, PARTY], effects: [EFFECT, ..]}, ..]`; none where the member is missing.
 pub(super) fn read_effects(effects: Option<&Field>) -> Result<Vec<DeclaredPair>, FieldError> {
     let Some(effects) = effects else { return Ok(Vec::new()) };
@@ -73,7 +76,7 @@ fn party(field: &Field) -> Result<PartyName, FieldError> {
         };
     }
     field.only(&["object", "group", "link"])?;
-    let kinds: [(_, fn(String) -> PartyName); 3] =
+    let kinds: [(_, Named); 3] =
         [("object", PartyName::Object), ("group", PartyName::Group), ("link", PartyName::Link)];
     let named: Vec<_> = kinds.into_iter().filter_map(|(kind, of)| Some((field.optional(kind)?, of))).collect();
     match named.as_slice() {

@@ -19,6 +19,7 @@ use crate::geometry::tolerance::UNIT_ROUNDOFF;
 pub const MOST_ROUNDS: usize = 512;
 
 /// Rounds on a pair of boxes: enough to tell most that are missed.
+#[cfg(feature = "effect-motion")]
 const BOX_ROUNDS: usize = 4;
 
 /// A gap of fewer than this many times what rounding hides is taken for a contact to come: steps within it would not end.
@@ -69,6 +70,7 @@ pub(super) struct Timing {
 pub(super) struct Seen {
     pub separation: Separation,
     /// Of the frame of its points in the world, metres.
+    #[cfg_attr(not(feature = "effect-motion"), expect(dead_code, reason = "only motions tell it"))]
     pub origin: Vec3,
 }
 
@@ -95,6 +97,7 @@ impl<'a> Pair<'a> {
         Self { approach, a, b, reaches: [reach_a, reach_b] }
     }
 
+    #[inline(never)]
     fn measure(&self, now: &Instant, goal: &Goal, cost: &mut Cost) -> Option<Separation> {
         let found = measure(self.a, self.b, now, self.reaches, goal)?;
         *cost += found.cost;
@@ -102,6 +105,7 @@ impl<'a> Pair<'a> {
     }
 
     /// For how long from `time` the elements are proved to stay apart, given what was measured then.
+    #[inline(never)]
     fn free_for(&self, time: f64, now: &Instant, found: &Separation) -> (f64, Option<Forecast<'a>>) {
         let rest = rest_of(time);
         let forecast = Forecast::new(self.a, self.b, self.approach, now, self.reaches, found.normal);
@@ -114,6 +118,7 @@ impl<'a> Pair<'a> {
     }
 
     /// A time before which what is in two boxes is proved apart, at least `from` and infinite where it stays apart until `bound`.
+    #[cfg(feature = "effect-motion")]
     pub fn arrival(&self, from: f64, bound: f64, asked: &Asked, cost: &mut Cost) -> f64 {
         let goal = asked.goal(Depth::Verdict);
         let mut time = from;
@@ -138,6 +143,7 @@ impl<'a> Pair<'a> {
     }
 
     /// When they first touch, from a time on before which they are proved apart. Contacts later than `bound` do not matter.
+    #[inline(never)]
     pub fn first_contact(&self, from: f64, bound: f64, asked: &Asked) -> Timing {
         let goal = asked.goal(Depth::Distance);
         let mut timing = Timing::never(Cost::default());

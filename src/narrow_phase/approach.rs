@@ -38,6 +38,7 @@ pub(super) struct Instant {
 }
 
 impl<'a> Approach<'a> {
+    #[inline(never)]
     pub fn new(a: &'a RigidMotion, b: &'a RigidMotion) -> Self {
         let between = b.start().translation() - a.start().translation();
         let gain = b.displacement() - a.displacement();
@@ -55,6 +56,7 @@ impl<'a> Approach<'a> {
     }
 
     /// At a time in `0..=1`.
+    #[inline(never)]
     pub fn at(&self, time: f64) -> Instant {
         let (a, b) = (self.a, self.b);
         let ends = a.end().zip(b.end()).filter(|_| time == 1.0);
@@ -79,6 +81,7 @@ impl<'a> Approach<'a> {
     }
 
     /// What a time may be off by when a point is looked for in the world: metres of A's origin.
+    #[cfg(feature = "effect-motion")]
     pub fn origin_error(&self) -> f64 {
         UNIT_ROUNDOFF * (2.0 * length(self.a.start().translation()) + 4.0 * length(self.a.displacement()))
     }

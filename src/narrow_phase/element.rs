@@ -8,8 +8,10 @@ use super::outcome::Separation;
 use super::pieces::swapped;
 use super::support::radius;
 use super::unbounded::{self, Unbounded};
+#[cfg(feature = "effect-motion")]
+use crate::geometry::OrientedBox;
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF};
-use crate::geometry::{Core, OrientedBox, Part, Placement, Shape, Vec3, length};
+use crate::geometry::{Core, Part, Placement, Shape, Vec3, length};
 
 /// What an element is before the ball is swept over it.
 #[derive(Clone)]
@@ -40,6 +42,7 @@ pub(super) struct Element<'a> {
 
 impl<'a> Element<'a> {
     /// A body, or a part of a compound, that is not a mesh.
+    #[inline(never)]
     pub fn new(whole: &'a Shape, part: Option<(u32, &'a Part)>) -> Self {
         let shape = part.map_or(whole, |(_, part)| &part.shape);
         let inner = part.map(|(_, part)| part.pose.placement());
@@ -64,12 +67,14 @@ impl<'a> Element<'a> {
     }
 
     /// What is in a leaf of the tree of this element's shape: a triangle of a mesh, say. Of a part of a compound the part is named.
+    #[inline(never)]
     pub fn leaf(&self, core: Core, number: u32) -> Self {
         let number = if self.part.is_some() { self.number } else { number };
         Self { core: Solid::Made(core), number, ..self.clone() }.measured()
     }
 
     /// A box of the tree of this element's shape. `slack`: how far a corner may stick out of it.
+    #[cfg(feature = "effect-motion")]
     pub fn boxed(&self, bounds: &OrientedBox, slack: f64) -> Self {
         let own = Placement::computed(bounds.axes, bounds.center);
         let inner = self.inner.map_or(own, |inner| composed(&inner, &own));
@@ -107,6 +112,7 @@ impl<'a> Element<'a> {
     }
 
     /// Its place, given the body's, and what that may be off by through composing two poses; metres.
+    #[inline(never)]
     pub fn placed(&self, body: &Placement) -> (Placement, f64) {
         match &self.inner {
             None => (*body, self.slack),

@@ -11,7 +11,7 @@
 //! second door, for all touching triangles; [`separations`] is the first one for many pairs at once, and [`fit`] asks how well
 //! a decomposition fits its mesh.
 //!
-//! [`impact`] is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
+//! `impact` is the door for bodies that move: `approach` says where both are at a time, `element` what their convex parts are,
 //! `forecast` for how long a plane parts two of them, and `advancement` goes on from time to time until they touch.
 //! [`cast_ray`] is the one for rays: `ray_forms` has formulas with their proofs, `ray_trees` goes down the tree of a mesh.
 //! [`contact_patch`] tells where the faces of a pair touch, given its separation: `patch` has it all.
@@ -36,6 +36,8 @@ mod given;
 mod gjk;
 mod goal;
 mod impact;
+#[cfg(feature = "effect-motion")]
+mod impact_search;
 mod inside;
 mod ladder;
 mod least;
@@ -76,7 +78,9 @@ mod witness;
 pub use batch::{PairQuestion, separations};
 pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
-pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place, impact};
+pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place};
+#[cfg(feature = "effect-motion")]
+pub use impact_search::impact;
 pub use outcome::{Bracket, Cost, Separation, Termination};
 pub use pair_cache::PairCache;
 #[cfg(feature = "effect-patch")]

@@ -5,7 +5,10 @@ use std::ops::Range;
 use super::answer::{Answer, ItemAnswer, Refused, Verdict};
 use super::context::length;
 use super::declared::{Coverage, declared_empty, effects_of};
+#[cfg(feature = "effect-motion")]
 use super::motions::Motions;
+#[cfg(not(feature = "effect-motion"))]
+use super::no_motions::Motions;
 use super::overlay::{Asked, Place, field_of};
 use super::pairs::Pairs;
 use super::request::{CheckMotions, CheckStates, Clearance, ClearanceOf, Context, Mode, PairQuery, Subject};
@@ -25,7 +28,8 @@ pub struct Prepared<'a> {
 
 enum Question<'a> {
     States(States<'a>),
-    Motions(Motions<'a>),
+    /// In a box, so that what the others take is the same in a build without motions.
+    Motions(Box<Motions<'a>>),
     Pairs(Pairs<'a>),
 }
 
@@ -65,8 +69,10 @@ impl<'a> Prepared<'a> {
     pub fn check_motions(asked: impl Into<Asked<'a>>, request: &'a CheckMotions) -> Result<Self, Refused> {
         let context = &request.context;
         let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Motion));
-        Self::in_each(asked.into(), request.mode, |world| Ok(Question::Motions(Motions::new(world, request)?)))?
-            .of_robot(&request.robot, context, wanted)
+        Self::in_each(asked.into(), request.mode, |world| {
+            Ok(Question::Motions(Box::new(Motions::new(world, request)?)))
+        })?
+        .of_robot(&request.robot, context, wanted)
     }
 
     /// Which pairs touch?
@@ -294,6 +300,8 @@ impl OneByOne<'_, '_> {
         (!stop()).then_some(answer)
     }
 
+    /// Not within its caller, so that both are compiled alike whether there is code for motions or not.
+    #[inline(never)]
     fn look_at(&mut self, item: usize, stop: &dyn Fn() -> bool) -> ItemAnswer {
         let number = self.prepared.asked.number(item);
         match &self.prepared.questions[number] {

@@ -3,13 +3,13 @@
 use super::answer::{Indeterminacy, Refused};
 use super::cast_answer::{CastHit, CastItem, CastVerdict, why};
 use super::cast_request::{CastMode, CastShapes, CheckMovingPairs, Moved, Mover, Way};
-use super::declared::Coverage;
+use super::declared::{Coverage, effects_of};
 use super::item_batch::ItemBatch;
 use super::met::MetBodies;
 use super::opponents::Opponents;
 use crate::geometry::{Aabb, BoxCast, Placement, Pose, RigidMotion, Shape, Vec3};
 use crate::narrow_phase::{Impact, ImpactGoal, NoImpact, impact};
-use crate::scene::{Body, BodyId, Effect, Effects, Snapshot};
+use crate::scene::{Body, BodyId, BodyRef, Effect, Effects, Party, Snapshot};
 
 /// Beyond this turn, radians, a box around the ball that a shape turns in is as good as any.
 const LARGE_TURN: f64 = 1.5;
@@ -171,7 +171,7 @@ impl<'a> MovingPairs<'a> {
         checked_resolution(request.resolution)?;
         let opponents = Opponents::without_solver(snapshot, &request.context)?;
         let pairs = request.items.iter().filter_map(|[a, b]| Some((a.moved.body()?, b.moved.body()?)));
-        let coverage = opponents.coverage_of_pairs(pairs, Effects::of(Effect::Motion))?;
+        let coverage = coverage_of_pairs(&opponents, pairs)?;
         Ok(Self { opponents, request, coverage })
     }
 
@@ -198,6 +198,31 @@ impl<'a> MovingPairs<'a> {
         met.take(found.outcome, hit(&found, body), reason(&found));
         Ok(met.finish())
     }
+}
+
+/// Checks what the scene declares of exactly these pairs of bodies.
+fn coverage_of_pairs(
+    opponents: &Opponents,
+    pairs: impl Iterator<Item = (BodyId, BodyId)>,
+) -> Result<Coverage, Refused> {
+    let Opponents { snapshot, context, .. } = opponents;
+    if !snapshot.declares_effects() {
+        return Ok(Coverage::default());
+    }
+    let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Motion));
+    let mut empty = Vec::new();
+    for (a, b) in pairs {
+        // A body that is not there makes its item invalid.
+        let Some((one, two)) = snapshot.body(a).zip(snapshot.body(b)) else { continue };
+        let Some(declared) = snapshot.declared(one.member(), two.member()) else { continue };
+        let [a, b] = [a, b].map(|id| Party::Body(BodyRef::Id(id)));
+        if declared.is_empty() {
+            empty.push((a, b));
+        } else if let Some(effect) = declared.lacking(wanted) {
+            return Err(Refused::NotDeclared { effect, a, b });
+        }
+    }
+    Ok(Coverage::of(empty, context.max_pairs))
 }
 
 impl ItemBatch for MovingPairs<'_> {

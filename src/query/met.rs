@@ -51,6 +51,7 @@ impl MetBodies {
         }
     }
 
+    #[inline(never)]
     pub fn finish(self) -> CastItem {
         let Self { mode, end, most, mut hits, mut grazed, soonest, cost } = self;
         let free = CastItem { free_until: end, cost, ..CastItem::without_work(CastVerdict::Clear) };

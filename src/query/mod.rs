@@ -5,6 +5,7 @@ mod batch;
 mod batch_question;
 mod cast_answer;
 mod cast_request;
+#[cfg(feature = "effect-motion")]
 mod casts;
 mod changed_pairs;
 mod contact_tracker;
@@ -14,10 +15,15 @@ mod declared;
 mod item_batch;
 mod mesh_card;
 mod met;
+#[cfg(feature = "effect-motion")]
 mod motion_course;
+#[cfg(feature = "effect-motion")]
 mod motion_measure;
+#[cfg(feature = "effect-motion")]
 mod motions;
 mod nearest_bodies;
+#[cfg(not(feature = "effect-motion"))]
+mod no_motions;
 mod opponents;
 mod overlap;
 mod overlay;
@@ -38,6 +44,7 @@ pub use cast_request::{
     CastMode, CastRays, CastShapes, CheckMovingPairs, DEFAULT_RESOLUTION, Moved, Mover, NearestBodies, Overlap, Region,
     Way,
 };
+#[cfg(feature = "effect-motion")]
 pub use casts::{Casts, MovingPairs};
 pub use contact_tracker::ContactTracker;
 pub use contacts::{
@@ -47,6 +54,8 @@ pub use declared::Coverage;
 pub use item_batch::ItemBatch;
 pub use mesh_card::MeshCard;
 pub use nearest_bodies::Neighbours;
+#[cfg(not(feature = "effect-motion"))]
+pub use no_motions::{Casts, MovingPairs};
 pub use overlap::Overlaps;
 pub use overlay::{Asked, Attached, NotSupposed, Overlay, Overlays, World, Worlds, field_of};
 pub use rays::Rays;

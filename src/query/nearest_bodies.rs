@@ -6,7 +6,7 @@ use super::cast_request::NearestBodies;
 use super::declared::Coverage;
 use super::item_batch::ItemBatch;
 use super::opponents::Opponents;
-use super::patch::patch;
+use super::patch::{PatchOf, patch_of};
 use super::request::{Subject, Wants};
 use crate::geometry::{Aabb, Placement, Shape};
 use crate::narrow_phase::{Cost, Depth, Goal, NoSeparation, Separation, separation};
@@ -17,6 +17,8 @@ pub struct Neighbours<'a> {
     opponents: Opponents<'a>,
     request: &'a NearestBodies,
     wants: Wants,
+    /// What makes patches, where they are wanted.
+    patch: Option<PatchOf>,
     coverage: Coverage,
 }
 
@@ -50,7 +52,7 @@ impl<'a> Neighbours<'a> {
         // In an overlap the order is that of the depths.
         let coverage =
             opponents.coverage(request.items.iter().filter_map(Subject::body), Effects::of(Effect::Depth))?;
-        Ok(Self { opponents, request, wants, coverage })
+        Ok(Self { opponents, request, wants, patch: patch_of(wants), coverage })
     }
 
     fn asker(&self, item: usize) -> Result<Asker<'a>, String> {
@@ -142,7 +144,7 @@ impl<'a> Neighbours<'a> {
         };
         let verdict = Verdict::of(&found.bracket, margin, found.termination);
         let placed = [(asker.shape, &asker.at), (&*body.shape, &body.placement)];
-        let touches = self.wants.patch && verdict != Verdict::Free;
+        let patch = self.patch.filter(|_| verdict != Verdict::Free);
         // What was asked about is side A, whatever its id: each pair here is one of it and another.
         PairAnswer {
             a: own.with_subshape(found.subshape_a),
@@ -151,7 +153,7 @@ impl<'a> Neighbours<'a> {
             bracket: found.bracket,
             signed_distance: found.signed_distance,
             witness: self.wants.witness.then_some(witness),
-            patch: if touches { patch(placed, found, margin, &self.request.context, cost) } else { None },
+            patch: patch.and_then(|patch| patch(placed, found, margin, &self.request.context, cost)),
             termination: found.termination,
         }
     }

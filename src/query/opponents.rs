@@ -7,7 +7,7 @@ use super::declared::{Coverage, declared_empty, effects_of};
 use super::request::Context;
 use crate::geometry::Shape;
 use crate::narrow_phase::Solver;
-use crate::scene::{Asker, Body, BodyId, BodyRef, Effects, Party, Snapshot};
+use crate::scene::{Asker, Body, BodyId, Effects, Snapshot};
 
 /// A request's context, checked against the scene.
 pub(super) struct Opponents<'a> {
@@ -17,6 +17,7 @@ pub(super) struct Opponents<'a> {
 }
 
 impl<'a> Opponents<'a> {
+    #[inline(never)]
     pub fn new(snapshot: &'a Snapshot, context: &'a Context) -> Result<Self, Refused> {
         Ok(Self { snapshot, context, sieve: Sieve::new(snapshot, context)? })
     }
@@ -44,31 +45,6 @@ impl<'a> Opponents<'a> {
         Ok(Coverage::of(empty, self.context.max_pairs))
     }
 
-    /// The same of exactly these pairs.
-    pub fn coverage_of_pairs(
-        &self,
-        pairs: impl Iterator<Item = (BodyId, BodyId)>,
-        besides: Effects,
-    ) -> Result<Coverage, Refused> {
-        if !self.snapshot.declares_effects() {
-            return Ok(Coverage::default());
-        }
-        let wanted = effects_of(self.context.wants, self.context.margin).and(besides);
-        let mut empty = Vec::new();
-        for (a, b) in pairs {
-            // A body that is not there makes its item invalid.
-            let Some((one, two)) = self.snapshot.body(a).zip(self.snapshot.body(b)) else { continue };
-            let Some(declared) = self.snapshot.declared(one.member(), two.member()) else { continue };
-            let [a, b] = [a, b].map(|id| Party::Body(BodyRef::Id(id)));
-            if declared.is_empty() {
-                empty.push((a, b));
-            } else if let Some(effect) = declared.lacking(wanted) {
-                return Err(Refused::NotDeclared { effect, a, b });
-            }
-        }
-        Ok(Coverage::of(empty, self.context.max_pairs))
-    }
-
     /// Whether the body takes part and may meet another one.
     pub fn may_meet(&self, own: &Body) -> bool {
         own.enabled && !self.snapshot.meets_no_body(own.member())
@@ -81,6 +57,7 @@ impl<'a> Opponents<'a> {
     }
 
     /// The margin of a body against something that is not in the scene, or against the body `own`, if the pair is looked at; metres.
+    #[inline(never)]
     pub fn margin(&self, own: Option<&Body>, other: &Body) -> Option<f64> {
         if !self.sieve.passes(other) {
             return None;

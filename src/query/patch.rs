@@ -1,13 +1,29 @@
 //! Where do the faces of a pair touch? For who wants it, of pairs that are not proved apart by more than their margin.
 
-use super::request::Context;
+use super::request::{Context, Wants};
 use crate::geometry::{Placement, Shape};
 use crate::narrow_phase::{ContactPatch, Cost, Separation};
 
-/// The patch of a pair, as far as the faces are within `margin` metres of each other, or within what the pair is apart. None
-/// where the separation names no single convex piece.
+/// Makes the patch of a pair, as far as the faces are within `margin` metres of each other, or within what the pair is apart.
+/// None where the separation names no single convex piece.
+///
+/// Called by its address, so that what is around the call is compiled alike whether there is such code or not.
+pub(super) type PatchOf =
+    fn([(&Shape, &Placement); 2], &Separation, f64, &Context, &mut Cost) -> Option<Box<ContactPatch>>;
+
+/// What makes patches, where they are wanted. None in a build without the code: it refuses a context that wants patches.
+pub(super) fn patch_of(wants: Wants) -> Option<PatchOf> {
+    if wants.patch { MAKER } else { None }
+}
+
+#[cfg(not(feature = "effect-patch"))]
+const MAKER: Option<PatchOf> = None;
+
 #[cfg(feature = "effect-patch")]
-pub(super) fn patch(
+const MAKER: Option<PatchOf> = Some(patch);
+
+#[cfg(feature = "effect-patch")]
+fn patch(
     [a, b]: [(&Shape, &Placement); 2],
     found: &Separation,
     margin: f64,
@@ -22,14 +38,17 @@ pub(super) fn patch(
     Some(Box::new(patch))
 }
 
-/// Never called: a context that wants patches is refused by such a build.
-#[cfg(not(feature = "effect-patch"))]
-pub(super) fn patch(
-    _: [(&Shape, &Placement); 2],
-    _: &Separation,
-    _: f64,
-    _: &Context,
-    _: &mut Cost,
-) -> Option<Box<ContactPatch>> {
-    None
+#[cfg(all(test, not(feature = "effect-patch")))]
+mod tests {
+    use super::*;
+    use crate::query::{Mode, PairQuery, Prepared, Refused};
+    use crate::scene::{Epoch, Scene};
+
+    #[test]
+    fn patches_are_refused_by_name() {
+        let context = Context { wants: Wants { patch: true, ..Wants::VERDICT }, ..Context::default() };
+        let query = PairQuery { items: Vec::new(), mode: Mode::All, context };
+        let refused = Prepared::collide(&*Scene::new(Epoch(1)).snapshot(), &query).err();
+        assert_eq!(refused, Some(Refused::NotBuilt { field: "context.wants", effect: "patch" }));
+    }
 }

@@ -31,6 +31,7 @@ pub(super) struct LinkPart<'a> {
     /// Its frame in the link's, metres.
     pub in_link: &'a Pose,
     /// Holds the shape; in the shape's frame, metres.
+    #[cfg_attr(not(feature = "effect-motion"), expect(dead_code, reason = "only motions ask for it"))]
     pub ball: Ball,
     /// Not a shape of the link's own.
     pub held: Option<&'a Body>,

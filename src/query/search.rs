@@ -4,7 +4,7 @@
 //! found, so the bracket of the minimum is the minimum of the brackets, whatever the order of the walk.
 
 use super::answer::{PairAnswer, Side, Verdict, Witness};
-use super::patch::patch;
+use super::patch::{PatchOf, patch_of};
 use super::request::{Context, Wants};
 use crate::geometry::{Placement, Shape};
 use crate::narrow_phase::{Bracket, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
@@ -25,13 +25,16 @@ pub(super) struct Plan<'a> {
     pub largest_margin: f64,
     /// Every pair that is not proved farther than this is measured and listed; metres.
     within: Option<f64>,
+    /// What makes patches, where they are wanted.
+    patch: Option<PatchOf>,
     pub stop: &'a dyn Fn() -> bool,
 }
 
 impl<'a> Plan<'a> {
     pub fn new(context: &'a Context, wants: Wants, largest_scene_margin: f64, stop: &'a dyn Fn() -> bool) -> Self {
         let largest_margin = context.margin.max(largest_scene_margin);
-        Self { context, wants: wants.closed(), largest_margin, within: None, stop }
+        let wants = wants.closed();
+        Self { context, wants, largest_margin, within: None, patch: patch_of(wants), stop }
     }
 
     /// The same, with every pair listed that is not proved farther than `within` metres, if that is said.
@@ -198,7 +201,10 @@ impl<'a> Search<'a> {
             if self.plan.wants.distance { (&self.nearest, is_nearer) } else { (&self.decider, is_graver) };
         let leads = best.as_ref().is_none_or(|best| comes_first(&answer, best));
         // Only of a pair that may be told, and now, while its shapes are at hand.
-        if self.plan.wants.patch && verdict != Verdict::Free && (listed || leads) {
+        if let Some(patch) = self.plan.patch
+            && verdict != Verdict::Free
+            && (listed || leads)
+        {
             answer.patch = patch([(a.shape, a.at), (b.shape, b.at)], found, margin, self.plan.context, &mut self.cost);
         }
         if listed {

@@ -8,7 +8,7 @@ use crate::query::{CheckStates, Context, Mode, Wants};
 use crate::scene::SceneOptions;
 use crate::service::{Change, Config, Patience, Service, ServiceError, Target};
 
-use super::motion::ROBOT;
+use super::planner::ROBOT;
 use super::plot::{Point, Series, plot};
 use super::race::{Raced, Rounds, Way, race};
 use super::scale::{Axis, Unit, time};

@@ -16,12 +16,14 @@ mod geometry;
 mod lecture;
 mod machine;
 mod markup;
+#[cfg(feature = "effect-motion")]
 mod motion;
 mod outputs;
 mod page;
 mod peers;
 mod penetration;
 mod pieces;
+mod planner;
 mod plot;
 mod precision;
 mod race;
@@ -36,7 +38,7 @@ mod sweep;
 mod table;
 mod truth;
 
-pub use motion::{Planner, PlannerScene};
+pub use planner::{Planner, PlannerScene};
 pub use section::{Figure, Section};
 pub use study::{Effort, NoStudy, Progress, Study};
 pub use table::Table;

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::geometry::Pose;
 use crate::query::{CheckMotions, CheckStates, Context, Find, Mode, Motions, Prepared, Verdict};
-use crate::robot::RobotModel;
-use crate::scene::{Edit, Epoch, NewBody, Scene, Snapshot};
+use crate::scene::{Epoch, Scene, Snapshot};
 
+use super::planner::{Planner, PlannerScene, ROBOT};
 use super::plot::{Point, Series, plot};
 use super::race::{Raced, Way, quantile, race};
 use super::scale::{Axis, Unit, time};
@@ -22,45 +21,6 @@ const STEPS: [usize; 8] = [2, 4, 8, 16, 32, 64, 128, 256];
 
 /// What is missed is held against the proof and against so many steps.
 const DENSE: usize = 1024;
-
-/// The robot's name in its scenes.
-pub(super) const ROBOT: &str = "robot";
-
-/// Bodies around a robot, and states of it.
-#[derive(Clone, Debug)]
-pub struct PlannerScene {
-    /// What it is called.
-    pub name: String,
-    /// All bodies.
-    pub bodies: Vec<NewBody>,
-    /// Joint positions.
-    pub states: Vec<Vec<f64>>,
-}
-
-/// A robot with the scenes it plans in.
-#[derive(Clone, Debug)]
-pub struct Planner {
-    /// What it is called.
-    pub name: String,
-    /// The robot.
-    pub robot: Arc<RobotModel>,
-    /// Where it stands.
-    pub scenes: Vec<PlannerScene>,
-}
-
-impl Planner {
-    /// The edits that make a scene with the robot in it.
-    pub(super) fn edits(&self, scene: &PlannerScene) -> Vec<Edit> {
-        let robot = Edit::AddRobot { name: ROBOT.to_owned(), model: Arc::clone(&self.robot), base: Pose::identity() };
-        scene.bodies.iter().cloned().map(Edit::AddBody).chain([robot]).collect()
-    }
-
-    fn snapshot(&self, scene: &PlannerScene) -> Result<Arc<Snapshot>, NoStudy> {
-        let mut made = Scene::new(Epoch(1));
-        made.apply(&self.edits(scene), None).map_err(NoStudy::own)?;
-        Ok(made.snapshot())
-    }
-}
 
 /// A motion in a scene.
 struct Motion {
@@ -137,10 +97,16 @@ fn proved(motion: &Motion, find: Find) -> Told {
     }
 }
 
+fn snapshot(planner: &Planner, scene: &PlannerScene) -> Result<Arc<Snapshot>, NoStudy> {
+    let mut made = Scene::new(Epoch(1));
+    made.apply(&planner.edits(scene), None).map_err(NoStudy::own)?;
+    Ok(made.snapshot())
+}
+
 /// From each state of a scene to the next, over the scenes by turns.
 fn motions(planner: &Planner, count: usize) -> Result<Vec<Motion>, NoStudy> {
     let snapshots: Vec<Arc<Snapshot>> =
-        planner.scenes.iter().map(|scene| planner.snapshot(scene)).collect::<Result<_, _>>()?;
+        planner.scenes.iter().map(|scene| snapshot(planner, scene)).collect::<Result<_, _>>()?;
     let longest = planner.scenes.iter().map(|scene| scene.states.len()).max().unwrap_or(0);
     let mut all = Vec::new();
     for i in 0..longest.saturating_sub(1) {

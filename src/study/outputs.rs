@@ -1,9 +1,12 @@
-//! What does each answer cost, on one and the same set of pairs? From the bare verdict up to the time of impact.
+//! What does each answer cost, on one and the same set of pairs? From the bare verdict up to the patch and the time of impact.
 
+#[cfg(feature = "effect-motion")]
 use crate::geometry::{Placement, Pose, Quaternion, RigidMotion, Vec3};
-use crate::narrow_phase::{
-    Accuracy, Depth, Goal, ImpactGoal, PairCache, Separation, impact, separation, separation_again,
-};
+use crate::narrow_phase::{Accuracy, Depth, Goal, PairCache, Separation, separation, separation_again};
+#[cfg(feature = "effect-motion")]
+use crate::narrow_phase::{ImpactGoal, impact};
+#[cfg(feature = "effect-patch")]
+use crate::narrow_phase::{PatchGoal, contact_patch};
 
 use super::families::{Family, Pair};
 use super::race::{Raced, Way, quantile, race};
@@ -37,13 +40,18 @@ enum Ask {
     Pair(Goal<'static>),
     /// The same from the cache of a moment ago.
     Again(Goal<'static>),
+    /// The same, and the patch that its answer leads to.
+    #[cfg(feature = "effect-patch")]
+    Patch(Goal<'static>, PatchGoal),
     /// B comes along the line between the origins until it touches.
+    #[cfg(feature = "effect-motion")]
     Impact(ImpactGoal<'static>),
 }
 
 fn outputs() -> Vec<Output> {
     let relative = |relative| Accuracy { absolute: 0.0, relative };
     let distance = |tolerance| Goal { depth: Depth::Distance, accuracy: relative(tolerance), ..Goal::penetration() };
+    let depth = Goal { accuracy: relative(1e-6), ..Goal::penetration() };
     let one = |name, ask| Output { name, ask, apart_only: false };
     vec![
         one("verdict, from the cache", Ask::Again(Goal::verdict())),
@@ -52,7 +60,10 @@ fn outputs() -> Vec<Output> {
         one("bracket to 10 %", Ask::Pair(distance(1e-1))),
         one("distance to 1e-6", Ask::Pair(distance(1e-6))),
         one("distance and witness to 1e-12", Ask::Pair(distance(1e-12))),
-        one("depth, too, to 1e-6", Ask::Pair(Goal { accuracy: relative(1e-6), ..Goal::penetration() })),
+        one("depth, too, to 1e-6", Ask::Pair(depth)),
+        #[cfg(feature = "effect-patch")]
+        one("depth and patch to 1e-6", Ask::Patch(depth, PatchGoal::default())),
+        #[cfg(feature = "effect-motion")]
         Output { name: "time of impact to 1e-9", ask: Ask::Impact(ImpactGoal::touch()), apart_only: true },
     ]
 }
@@ -64,6 +75,7 @@ struct Set {
     /// As many of them are apart: the first ones.
     apart: usize,
     /// B on its way through A.
+    #[cfg(feature = "effect-motion")]
     motions: Vec<(RigidMotion, RigidMotion)>,
 }
 
@@ -71,12 +83,19 @@ impl Set {
     fn new(family: Family, of_each: usize, random: &mut Random) -> Self {
         let pairs: Vec<Pair> = GAPS.iter().flat_map(|gap| family.pairs(*gap, of_each, random)).collect();
         let apart = pairs.iter().filter(|pair| is_apart(pair)).count();
-        let motions = pairs.iter().filter_map(motions).collect();
-        Self { family, pairs, apart, motions }
+        #[cfg(feature = "effect-motion")]
+        let motions = pairs.iter().take(apart).filter_map(motions).collect();
+        Self {
+            family,
+            pairs,
+            apart,
+            #[cfg(feature = "effect-motion")]
+            motions,
+        }
     }
 
     fn items(&self, output: &Output) -> usize {
-        if output.apart_only { self.apart.min(self.motions.len()) } else { self.pairs.len() }
+        if output.apart_only { self.apart } else { self.pairs.len() }
     }
 
     fn answer(&self, item: usize, goal: &Goal) -> Option<Separation> {
@@ -98,6 +117,13 @@ impl Set {
                     let _ = std::hint::black_box(separation_again(a, b, at_a, at_b, goal, cache));
                 })
             }
+            #[cfg(feature = "effect-patch")]
+            Ask::Patch(goal, patch) => Way::new(items, move |item| {
+                let Pair { a, b, at_a, at_b, .. } = &self.pairs[item];
+                let found = self.answer(item, goal);
+                let _ = std::hint::black_box(found.map(|found| contact_patch(a, b, at_a, at_b, &found, patch)));
+            }),
+            #[cfg(feature = "effect-motion")]
             Ask::Impact(goal) => Way::new(items, move |item| {
                 let (Pair { a, b, .. }, (motion_a, motion_b)) = (&self.pairs[item], &self.motions[item]);
                 let _ = std::hint::black_box(impact(a, b, motion_a, motion_b, goal));
@@ -124,6 +150,7 @@ fn is_apart(pair: &Pair) -> bool {
 }
 
 /// A stands still; B goes on by its distance to A's origin, and turns by a tenth of a turn on the way.
+#[cfg(feature = "effect-motion")]
 fn motions(pair: &Pair) -> Option<(RigidMotion, RigidMotion)> {
     let still = |at: &Placement| {
         let rotation = at.quaternion.unwrap_or(Quaternion::IDENTITY);
@@ -200,6 +227,11 @@ fn reading(set: &Set, outputs: &[Output], raced: &[Raced]) -> Option<String> {
     };
     let verdict = of("verdict")?;
     let times = |name: &str| Some(format!("{:.1}", of(name)? / verdict));
+    let others: String =
+        [("that with the patch", "depth and patch to 1e-6"), ("the time of impact", "time of impact to 1e-9")]
+            .into_iter()
+            .filter_map(|(what, name)| Some(format!(", {what} {}", times(name)?)))
+            .collect();
     let apart = set.pairs.len() - set.apart;
     let overlapping: Vec<f64> = (set.apart..set.pairs.len())
         .filter_map(|item| set.answer(item, &Goal::penetration()))
@@ -207,7 +239,7 @@ fn reading(set: &Set, outputs: &[Output], raced: &[Raced]) -> Option<String> {
         .collect();
     Some(format!(
         "{}: as multiples of a verdict ({}), the distance to 1e-6 takes {}, with the witness to 1e-12 {}, with the depth of the {} \
-         overlaps {} (there {:.0} support calls in the median), the time of impact {}; from the cache a verdict takes {}.",
+         overlaps {} (there {:.0} support calls in the median){}; from the cache a verdict takes {}.",
         set.family.name(),
         time(verdict),
         times("distance to 1e-6")?,
@@ -215,7 +247,7 @@ fn reading(set: &Set, outputs: &[Output], raced: &[Raced]) -> Option<String> {
         apart,
         times("depth, too, to 1e-6")?,
         quantile(&overlapping, 0.5),
-        times("time of impact to 1e-9")?,
+        others,
         times("verdict, from the cache")?,
     ))
 }

@@ -6,9 +6,11 @@ use std::time::Instant;
 use std::{fs, io};
 
 use super::machine::Machine;
-use super::motion::Planner;
+#[cfg(feature = "effect-motion")]
+use super::motion;
+use super::planner::Planner;
 use super::section::Section;
-use super::{batches, broad, distance, geometry, lecture, motion, outputs, page, penetration, precision};
+use super::{batches, broad, distance, geometry, lecture, outputs, page, penetration, precision};
 
 /// How much work a study is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,13 +96,15 @@ pub struct Study {
 /// An experiment: its name, its share of the time, and what makes it.
 type Experiment = (&'static str, f64, fn(&Study, &mut dyn FnMut(f64)) -> Result<Section, NoStudy>);
 
-/// In the order of the report. The shares are of the time that is measured; they add up to one.
-const EXPERIMENTS: [Experiment; 9] = [
+/// In the order of the report, without those whose effects were left out of the build. The shares are of the time that is measured;
+/// together they are one.
+const EXPERIMENTS: &[Experiment] = &[
     ("distance", distance::SHARE, distance::section),
     ("outputs", outputs::SHARE, outputs::section),
     ("precision", precision::SHARE, precision::section),
     ("penetration", penetration::SHARE, penetration::section),
     ("geometry", geometry::SHARE, geometry::section),
+    #[cfg(feature = "effect-motion")]
     ("motion", motion::SHARE, motion::section),
     ("broad phase", broad::SHARE, broad::section),
     ("batches", batches::SHARE, batches::section),
@@ -118,7 +122,7 @@ impl Study {
         let machine = Machine::here(&self.command);
         let mut sections = Vec::new();
         let mut done = 0.0;
-        for (name, share, make) in EXPERIMENTS {
+        for &(name, share, make) in EXPERIMENTS {
             (progress.tell)(name, done);
             let section = make(self, &mut |part| (progress.tell)(name, done + share * part))?;
             write(&self.out.join(format!("{}.csv", section.table.name)), &section.table.csv())?;
@@ -145,7 +149,7 @@ pub(super) fn read(path: &Path) -> Result<String, NoStudy> {
     fs::read_to_string(path).map_err(|error| NoStudy::File { path: path.to_owned(), error })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "effect-motion"))]
 mod tests {
     use super::*;
 

@@ -8,6 +8,7 @@ mod early_outs;
 mod extremes;
 mod fits;
 mod hard_cases;
+#[cfg(feature = "effect-motion")]
 mod impacts;
 mod known_failures;
 mod laws;

@@ -1,5 +1,6 @@
 //! Rays, moving shapes, regions and neighbours against whole scenes. Oracle: every body asked one by one through the narrow phase,
 //! without a tree; and the same scene with another broad phase, whose answers have to be equal but for what they cost.
+#![cfg(feature = "effect-motion")]
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
 //! Straight motions between the states of the UR5 of `tests/data`: what a planner asks about.
+#![cfg(feature = "effect-motion")]
 
 use serde_json::Value;
 

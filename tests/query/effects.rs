@@ -1,6 +1,6 @@
 //! Declared effects and questions. Oracle: the same question to the same scene without declarations, where everything is permitted
 //! and every pair is looked at; which pairs that leaves out is said by hand.
-#![cfg(feature = "effect-patch")]
+#![cfg(all(feature = "effect-motion", feature = "effect-patch"))]
 
 use std::sync::Arc;
 

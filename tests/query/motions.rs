@@ -1,4 +1,5 @@
 //! Motions of small robots whose contacts are known in closed form, and of the UR5 against dense sampling.
+#![cfg(feature = "effect-motion")]
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use clearance::geometry::{Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
 use clearance::query::{
-    Answer, Attached, CheckMotions, CheckStates, Context, Filter, Find, ItemAnswer, Mode, Motions, NotSupposed,
-    Overlay, PairAnswer, PairQuery, Prepared, Refused, Side, Subject, Verdict, Wants, World, Worlds,
+    Answer, Attached, CheckStates, Context, Filter, ItemAnswer, Mode, NotSupposed, Overlay, PairAnswer, PairQuery,
+    Prepared, Refused, Side, Subject, Verdict, Wants, World, Worlds,
 };
 use clearance::robot::{MeshRequest, ModelOptions, RobotModel};
 use clearance::scene::{BodyId, BodyRef, Edit, Epoch, NewBody, Party, Revision, Scene, SceneOptions, Snapshot};
@@ -333,8 +333,10 @@ fn post() -> Arc<Snapshot> {
     after(&[vec![robot, rod, post]]).snapshot()
 }
 
+#[cfg(feature = "effect-motion")]
 #[test]
 fn a_motion_takes_what_is_held_along() {
+    use clearance::query::{CheckMotions, Find, Motions};
     let base = post();
     let motion = |positions: &[f64]| CheckMotions {
         robot: "arm".to_owned(),

@@ -2,6 +2,7 @@
 //!
 //! Oracle: `CheckStates` at positions along the motion, which knows nothing of bounds on motions. It cannot see what lies between
 //! two samples, so it converges from one side: a motion that is told to be free must be free at all of them.
+#![cfg(feature = "effect-motion")]
 
 use std::fmt::Write;
 use std::sync::Arc;

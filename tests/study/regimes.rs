@@ -6,7 +6,7 @@ use crate::folder::{Row, maybe, number, table, values};
 fn every_table_has_its_times() {
     for (name, least) in [
         ("distance", 3000),
-        ("outputs", 24),
+        ("outputs", 27),
         ("precision", 100),
         ("penetration", 400),
         ("geometry", 20),

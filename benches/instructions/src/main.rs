@@ -11,7 +11,9 @@ use std::process::ExitCode;
 
 use clearance::geometry::{Shape, Vec3};
 use clearance::narrow_phase::{Accuracy, Depth, Goal, separation};
-use clearance::query::{Context, Mode, PairQuery, Prepared, Subject, Wants};
+use clearance::query::{
+    CastMode, CastRays, Context, ItemBatch, Mode, NearestBodies, Neighbours, PairQuery, Prepared, Rays, Subject, Wants,
+};
 use clearance::scene::BodyId;
 use inputs::{Lie, Pair, Random, cuboid, ellipsoid, heap, hull, mesh, pairs};
 
@@ -46,6 +48,8 @@ fn kernels() -> Vec<(String, fn() -> Kernel)> {
     add("question, verdicts", || question(Wants::VERDICT));
     add("question, distances", || question(Wants { distance: true, ..Wants::VERDICT }));
     add("question, witnesses and depths", || question(Wants { patch: false, ..Wants::ALL }));
+    add("question, nearest bodies", nearest_bodies);
+    add("question, rays", rays);
     add("distance apart, mesh 800", || ask(Depth::Distance, pairs(MESHES, Lie::Apart, |r| mesh(r, 20, 21))));
     all
 }
@@ -69,6 +73,33 @@ fn question(wants: Wants) -> Kernel {
         let query = PairQuery { items: vec![Subject::Body(ids[i % ids.len()])], mode: Mode::All, context };
         let prepared = Prepared::collide(&*snapshot, &query).expect("nothing in the question is refused");
         black_box(prepared.answer(&|| false));
+    })
+}
+
+/// The three nearest of each body of a heap.
+fn nearest_bodies() -> Kernel {
+    let snapshot = heap(CALLS);
+    let ids: Vec<BodyId> = snapshot.bodies().map(|body| body.id).collect();
+    Box::new(move |i| {
+        let items = vec![Subject::Body(ids[i % ids.len()])];
+        let request = NearestBodies { items, count: 3, context: Context { margin: 0.01, ..Context::default() } };
+        let batch = Neighbours::new(&snapshot, &request).expect("nothing in the question is refused");
+        black_box(batch.answer_all(&|| false));
+    })
+}
+
+/// Rays through a heap, to what they meet first.
+fn rays() -> Kernel {
+    let snapshot = heap(CALLS);
+    let mut random = Random(4);
+    let rays: Vec<[Vec3; 2]> = (0..CALLS).map(|_| [random.vector() * 5.0, random.vector()]).collect();
+    Box::new(move |i| {
+        let [origin, direction] = rays[i % rays.len()].map(|vector| vector.as_slice().to_vec());
+        let lengths = vec![10.0];
+        let context = Context::default();
+        let request = CastRays { origins: origin, directions: direction, lengths, mode: CastMode::First, context };
+        let batch = Rays::new(&snapshot, &request).expect("nothing in the question is refused");
+        black_box(batch.answer_all(&|| false));
     })
 }
 
