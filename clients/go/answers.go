@@ -143,30 +143,6 @@ func stoppedAt(answer *pb.Answer) int {
 	return int(answer.GetStoppedAt())
 }
 
-// table is rows of joint positions as a message.
-func table(name string, rows [][]float64) (*pb.Doubles, error) {
-	var bytes []byte
-	for i, row := range rows {
-		if len(row) != len(rows[0]) {
-			return nil, fmt.Errorf("%s[%d]: has %d numbers, the first has %d", name, i, len(row), len(rows[0]))
-		}
-		bytes = appendDoubles(bytes, row)
-	}
-	return &pb.Doubles{Form: &pb.Doubles_LittleEndian{LittleEndian: bytes}}, nil
-}
-
-// edges is starts and goals, one after the other.
-func edges(starts, goals [][]float64) (*pb.Doubles, error) {
-	if len(starts) != len(goals) {
-		return nil, fmt.Errorf("goals: are %d, starts are %d", len(goals), len(starts))
-	}
-	rows := make([][]float64, 0, 2*len(starts))
-	for i := range starts {
-		rows = append(rows, starts[i], goals[i])
-	}
-	return table("starts and goals", rows)
-}
-
 // checkCount finds rows of a wrong length: the daemon sees one list of numbers and cuts it by the robot's joints.
 func checkCount(name string, rows [][]float64, got int) error {
 	if got == len(rows) {

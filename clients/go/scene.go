@@ -54,14 +54,11 @@ func (s *Scene) Delete(ctx context.Context) error {
 // CheckStates tells whether the robot is free in these states: vectors of joint positions, radians, metres for sliding joints.
 // It measures the nearest pairs unless Want says otherwise.
 func (s *Scene) CheckStates(ctx context.Context, robot string, states [][]float64, options ...Option) (*States, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_BULK, DistanceToo, options)
-	positions, err := table("states", states)
+	request, err := s.statesRequest(pb.AnswerForm_ANSWER_FORM_BULK, DistanceToo, robot, states, options)
 	if err != nil {
 		return nil, err
 	}
-	answer, err := s.client.Queries.CheckStates(ctx, &pb.CheckStatesRequest{
-		Context: asked.Context, Robot: robot, Positions: positions, Mode: asked.Mode,
-	})
+	answer, err := s.client.Queries.CheckStates(ctx, request)
 	if err != nil {
 		return nil, err
 	}
@@ -71,15 +68,12 @@ func (s *Scene) CheckStates(ctx context.Context, robot string, states [][]float6
 // LookAtStates is CheckStates with everything there is to know: which pairs, and where. For a few states; a batch of thousands
 // is quicker without.
 func (s *Scene) LookAtStates(ctx context.Context, robot string, states [][]float64, options ...Option) (*pb.Answer, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_ITEMS, WitnessToo, options)
-	asked.Context.Wants.Pairs = true
-	positions, err := table("states", states)
+	request, err := s.statesRequest(pb.AnswerForm_ANSWER_FORM_ITEMS, WitnessToo, robot, states, options)
 	if err != nil {
 		return nil, err
 	}
-	answer, err := s.client.Queries.CheckStates(ctx, &pb.CheckStatesRequest{
-		Context: asked.Context, Robot: robot, Positions: positions, Mode: asked.Mode,
-	})
+	request.Context.Wants.Pairs = true
+	answer, err := s.client.Queries.CheckStates(ctx, request)
 	if err != nil {
 		return nil, err
 	}
@@ -91,14 +85,11 @@ func (s *Scene) LookAtStates(ctx context.Context, robot string, states [][]float
 func (s *Scene) CheckMotions(
 	ctx context.Context, robot string, starts, goals [][]float64, options ...Option,
 ) (*Motions, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_BULK, VerdictOnly, options)
-	positions, err := edges(starts, goals)
+	request, err := s.motionsRequest(robot, starts, goals, options)
 	if err != nil {
 		return nil, err
 	}
-	answer, err := s.client.Queries.CheckMotions(ctx, &pb.CheckMotionsRequest{
-		Context: asked.Context, Robot: robot, Positions: positions, Mode: asked.Mode, Effort: asked.Effort,
-	})
+	answer, err := s.client.Queries.CheckMotions(ctx, request)
 	if err != nil {
 		return nil, err
 	}
@@ -107,14 +98,11 @@ func (s *Scene) CheckMotions(
 
 // CheckPath tells whether the robot is free all along a path, and where it is blocked first: StoppedAt of the answer.
 func (s *Scene) CheckPath(ctx context.Context, robot string, waypoints [][]float64, options ...Option) (*Motions, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_BULK, VerdictOnly, options)
-	positions, err := table("waypoints", waypoints)
+	request, err := s.pathRequest(robot, waypoints, options)
 	if err != nil {
 		return nil, err
 	}
-	answer, err := s.client.Queries.CheckPath(ctx, &pb.CheckPathRequest{
-		Context: asked.Context, Robot: robot, Waypoints: positions, Mode: asked.Mode, Effort: asked.Effort,
-	})
+	answer, err := s.client.Queries.CheckPath(ctx, request)
 	if err != nil {
 		return nil, err
 	}
@@ -124,19 +112,13 @@ func (s *Scene) CheckPath(ctx context.Context, robot string, waypoints [][]float
 // Distance tells how far the nearest body is from each subject; without subjects, the nearest pair of all bodies. It tells
 // points and normals unless Want says otherwise.
 func (s *Scene) Distance(ctx context.Context, subjects []*pb.Subject, options ...Option) (*pb.Answer, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_ITEMS, WitnessToo, options)
-	answer, err := s.client.Queries.Distance(ctx, &pb.DistanceRequest{
-		Context: asked.Context, Items: orAllPairs(subjects), Mode: asked.Mode,
-	})
+	answer, err := s.client.Queries.Distance(ctx, s.distanceRequest(subjects, options))
 	return answer.GetAnswer(), err
 }
 
 // Collide tells which bodies each subject touches; without subjects, which pairs of all bodies touch.
 func (s *Scene) Collide(ctx context.Context, subjects []*pb.Subject, options ...Option) (*pb.Answer, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_ITEMS, VerdictOnly, options)
-	answer, err := s.client.Queries.Collide(ctx, &pb.CollideRequest{
-		Context: asked.Context, Items: orAllPairs(subjects), Mode: asked.Mode,
-	})
+	answer, err := s.client.Queries.Collide(ctx, s.collideRequest(subjects, options))
 	return answer.GetAnswer(), err
 }
 
@@ -144,11 +126,7 @@ func (s *Scene) Collide(ctx context.Context, subjects []*pb.Subject, options ...
 func (s *Scene) Clearance(
 	ctx context.Context, within float64, subjects []*pb.Subject, options ...Option,
 ) (*pb.Answer, error) {
-	asked := s.ask(pb.AnswerForm_ANSWER_FORM_ITEMS, DistanceToo, options)
-	items := &pb.ClearanceSubjects{Items: orAllPairs(subjects)}
-	answer, err := s.client.Queries.Clearance(ctx, &pb.ClearanceRequest{
-		Context: asked.Context, Within: within, Mode: asked.Mode, Subjects: &pb.ClearanceRequest_Items{Items: items},
-	})
+	answer, err := s.client.Queries.Clearance(ctx, s.clearanceRequest(within, subjects, options))
 	return answer.GetAnswer(), err
 }
 
@@ -189,11 +167,4 @@ func Placed(shape *pb.Shape, pose *pb.Pose) *pb.Subject {
 // ChangedSince is every pair of bodies that changed after a revision.
 func ChangedSince(revision uint64) *pb.Subject {
 	return &pb.Subject{Kind: &pb.Subject_ChangedSince{ChangedSince: &pb.ChangedSince{Revision: revision}}}
-}
-
-func orAllPairs(subjects []*pb.Subject) []*pb.Subject {
-	if len(subjects) > 0 {
-		return subjects
-	}
-	return []*pb.Subject{{Kind: &pb.Subject_AllPairs{AllPairs: &pb.AllPairs{}}}}
 }

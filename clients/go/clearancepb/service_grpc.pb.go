@@ -809,6 +809,8 @@ type QueriesClient interface {
 	CheckPath(ctx context.Context, in *CheckPathRequest, opts ...grpc.CallOption) (*CheckPathResponse, error)
 	// Which pairs are within a distance?
 	Clearance(ctx context.Context, in *ClearanceRequest, opts ...grpc.CallOption) (*ClearanceResponse, error)
+	// What would a question cost, for each output at each tolerance?
+	Estimate(ctx context.Context, in *EstimateRequest, opts ...grpc.CallOption) (*EstimateResponse, error)
 	// Questions of any kind, many at a time.
 	QueryStream(ctx context.Context, opts ...grpc.CallOption) (Queries_QueryStreamClient, error)
 }
@@ -952,6 +954,15 @@ func (c *queriesClient) Clearance(ctx context.Context, in *ClearanceRequest, opt
 	return out, nil
 }
 
+func (c *queriesClient) Estimate(ctx context.Context, in *EstimateRequest, opts ...grpc.CallOption) (*EstimateResponse, error) {
+	out := new(EstimateResponse)
+	err := c.cc.Invoke(ctx, "/clearance.v1.Queries/Estimate", in, out, opts...)
+	if err != nil {
+		return nil, err
+	}
+	return out, nil
+}
+
 func (c *queriesClient) QueryStream(ctx context.Context, opts ...grpc.CallOption) (Queries_QueryStreamClient, error) {
 	stream, err := c.cc.NewStream(ctx, &_Queries_serviceDesc.Streams[1], "/clearance.v1.Queries/QueryStream", opts...)
 	if err != nil {
@@ -1011,6 +1022,8 @@ type QueriesServer interface {
 	CheckPath(context.Context, *CheckPathRequest) (*CheckPathResponse, error)
 	// Which pairs are within a distance?
 	Clearance(context.Context, *ClearanceRequest) (*ClearanceResponse, error)
+	// What would a question cost, for each output at each tolerance?
+	Estimate(context.Context, *EstimateRequest) (*EstimateResponse, error)
 	// Questions of any kind, many at a time.
 	QueryStream(Queries_QueryStreamServer) error
 	mustEmbedUnimplementedQueriesServer()
@@ -1055,6 +1068,9 @@ func (UnimplementedQueriesServer) CheckPath(context.Context, *CheckPathRequest) 
 }
 func (UnimplementedQueriesServer) Clearance(context.Context, *ClearanceRequest) (*ClearanceResponse, error) {
 	return nil, status.Errorf(codes.Unimplemented, "method Clearance not implemented")
+}
+func (UnimplementedQueriesServer) Estimate(context.Context, *EstimateRequest) (*EstimateResponse, error) {
+	return nil, status.Errorf(codes.Unimplemented, "method Estimate not implemented")
 }
 func (UnimplementedQueriesServer) QueryStream(Queries_QueryStreamServer) error {
 	return status.Errorf(codes.Unimplemented, "method QueryStream not implemented")
@@ -1291,6 +1307,24 @@ func _Queries_Clearance_Handler(srv interface{}, ctx context.Context, dec func(i
 	return interceptor(ctx, in, info, handler)
 }
 
+func _Queries_Estimate_Handler(srv interface{}, ctx context.Context, dec func(interface{}) error, interceptor grpc.UnaryServerInterceptor) (interface{}, error) {
+	in := new(EstimateRequest)
+	if err := dec(in); err != nil {
+		return nil, err
+	}
+	if interceptor == nil {
+		return srv.(QueriesServer).Estimate(ctx, in)
+	}
+	info := &grpc.UnaryServerInfo{
+		Server:     srv,
+		FullMethod: "/clearance.v1.Queries/Estimate",
+	}
+	handler := func(ctx context.Context, req interface{}) (interface{}, error) {
+		return srv.(QueriesServer).Estimate(ctx, req.(*EstimateRequest))
+	}
+	return interceptor(ctx, in, info, handler)
+}
+
 func _Queries_QueryStream_Handler(srv interface{}, stream grpc.ServerStream) error {
 	return srv.(QueriesServer).QueryStream(&queriesQueryStreamServer{stream})
 }
@@ -1364,6 +1398,10 @@ var _Queries_serviceDesc = grpc.ServiceDesc{
 		{
 			MethodName: "Clearance",
 			Handler:    _Queries_Clearance_Handler,
+		},
+		{
+			MethodName: "Estimate",
+			Handler:    _Queries_Estimate_Handler,
 		},
 	},
 	Streams: []grpc.StreamDesc{

@@ -12,6 +12,7 @@
 #include "clearance/client.hpp"
 #include "clearance/edits.hpp"
 #include "clearance/error.hpp"
+#include "clearance/estimate.hpp"
 #include "clearance/geometry.hpp"
 #include "clearance/question.hpp"
 #include "clearance/robot.hpp"

@@ -11,6 +11,7 @@
 
 #include "clearance/answers.hpp"
 #include "clearance/edits.hpp"
+#include "clearance/estimate.hpp"
 #include "clearance/question.hpp"
 #include "clearance/v1/service.pb.h"
 
@@ -80,6 +81,21 @@ class Scene {
   /// Which pairs of links, and of links and bodies, are within that many metres in each state?
   v1::Answer clearance_of_states(const std::string& robot, Rows states, double within, const Question& question = {});
 
+  /// What would check_states cost, and the others below? One row for each output and tolerance: a sample of the items is asked, and
+  /// timed. Of the question count revision, filter, margin, overlay, budget and whatever context() sets; what it wants, its accuracy
+  /// and stop_at_first do not, as each row has its own.
+  v1::EstimateResponse estimate_states(const std::string& robot, Rows states, const Prices& prices = {}, const Question& question = {});
+  v1::EstimateResponse estimate_motions(const std::string& robot, Rows starts, Rows goals, const Prices& prices = {},
+                                        const Question& question = {});
+  v1::EstimateResponse estimate_path(const std::string& robot, Rows waypoints, const Prices& prices = {}, const Question& question = {});
+  /// Without subjects: all pairs, as one item.
+  v1::EstimateResponse estimate_distance(const std::vector<v1::Subject>& subjects = {}, const Prices& prices = {},
+                                         const Question& question = {});
+  v1::EstimateResponse estimate_collide(const std::vector<v1::Subject>& subjects = {}, const Prices& prices = {},
+                                        const Question& question = {});
+  v1::EstimateResponse estimate_clearance(double within, const std::vector<v1::Subject>& subjects = {}, const Prices& prices = {},
+                                          const Question& question = {});
+
   /// What the question says, for requests sent with Client::call.
   v1::Context context(const Question& question = {}) const;
 
@@ -88,6 +104,16 @@ class Scene {
 
   Scene(Client& client, std::string name) : client_(&client), name_(std::move(name)) {}
   v1::Context context(const Question& question, Want by_default, v1::AnswerForm form) const;
+  v1::CheckStatesRequest states_request(const std::string& robot, const Rows& states, const Question& question, Want by_default,
+                                        v1::AnswerForm form) const;
+  v1::CheckMotionsRequest motions_request(const std::string& robot, const Rows& starts, const Rows& goals, const Question& question) const;
+  v1::CheckPathRequest path_request(const std::string& robot, const Rows& waypoints, const Question& question) const;
+  v1::DistanceRequest distance_request(const std::vector<v1::Subject>& subjects, const Question& question) const;
+  v1::CollideRequest collide_request(const std::vector<v1::Subject>& subjects, const Question& question) const;
+  v1::ClearanceRequest clearance_request(double within, const std::vector<v1::Subject>& subjects, const Question& question) const;
+  v1::ClearanceRequest clearance_of_states_request(const std::string& robot, const Rows& states, double within,
+                                                   const Question& question) const;
+  v1::EstimateResponse estimate(v1::EstimateRequest& request, const Prices& prices, const Question& question);
 
   Client* client_;
   std::string name_;
