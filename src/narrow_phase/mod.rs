@@ -23,6 +23,8 @@ mod box_gaps;
 mod bracketing;
 mod convex;
 mod course;
+#[cfg(feature = "effect-derivatives")]
+mod derivative;
 mod double_double;
 mod element;
 mod epa;
@@ -76,6 +78,8 @@ mod wall;
 mod witness;
 
 pub use batch::{PairQuestion, separations};
+#[cfg(feature = "effect-derivatives")]
+pub use derivative::{DerivativeMethod, Derivatives, TwistMatrix, derivatives};
 pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place};

@@ -4,6 +4,8 @@
 mod batches;
 mod caches;
 mod closed_forms;
+#[cfg(feature = "effect-patch")]
+mod derivatives;
 mod early_outs;
 mod extremes;
 mod fits;
@@ -18,7 +20,6 @@ mod oracle;
 mod pair_bytes;
 #[cfg(feature = "effect-patch")]
 mod patch_regimes;
-#[cfg(feature = "effect-patch")]
 mod patches;
 mod random_pairs;
 mod rays;

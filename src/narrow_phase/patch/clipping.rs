@@ -11,7 +11,7 @@ use super::contact_patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, Pat
 use super::face::{Face, View, across, face};
 use super::flat_region::{Flat, common, cut};
 use super::reduction::{Place, Places, reduce};
-use super::touching_piece::TouchingPiece;
+use super::touching_piece::{TouchingPiece, is_wall};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
 use crate::geometry::{Core, Placement, Shape, Vec3, length};
@@ -77,10 +77,6 @@ pub fn contact_patch(
     // A witness that is alone is a polygon of its own.
     patch.corners = places.len().max(1);
     Ok(patch)
-}
-
-fn is_wall(core: &Core) -> bool {
-    matches!(core, Core::HalfSpace { .. } | Core::Plane { .. })
 }
 
 /// What of one shape faces the other.

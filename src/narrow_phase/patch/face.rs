@@ -20,7 +20,7 @@ const SEARCHED: usize = 24;
 
 /// What faces the other shape. The heights of its corners are over the witness, towards the other shape, swept radius included; metres.
 #[derive(Clone, Debug)]
-pub(super) struct Face {
+pub(in super::super) struct Face {
     /// Of a convex polygon, counter-clockwise; two or one for an edge or a corner.
     pub outline: Corners,
     /// All of its corners, also those within the outline.
@@ -48,7 +48,7 @@ impl Face {
 }
 
 /// How a core is seen along the normal.
-pub(super) struct View {
+pub(in super::super) struct View {
     /// The axes of the plane, and the direction towards the other shape, in the core's frame.
     axes: [Vec3; 3],
     /// Where the core's origin is along these axes, from the witness; the swept radius is on top of its height.
@@ -95,7 +95,7 @@ impl View {
 }
 
 /// Two axes across a unit vector that make a right-handed frame with it, x, y, normal. Those of a normal along an axis are exact.
-pub(super) fn across(normal: Vec3) -> [Vec3; 2] {
+pub(in super::super) fn across(normal: Vec3) -> [Vec3; 2] {
     let least = normal.abs().imin();
     let axis = Vec3::ith(least, 1.0);
     let x = (axis - normal * normal[least]).normalize();
@@ -103,7 +103,7 @@ pub(super) fn across(normal: Vec3) -> [Vec3; 2] {
 }
 
 /// What of a convex core faces the other shape.
-pub(super) fn face(core: &Core, view: &View, cost: &mut PatchCost) -> Face {
+pub(in super::super) fn face(core: &Core, view: &View, cost: &mut PatchCost) -> Face {
     match core {
         Core::Convex(hull) => face_of_hull(hull, view, cost),
         Core::Cylinder { .. } | Core::Cone { .. } | Core::Ellipsoid { .. } => round_face(core, view, cost),

@@ -4,7 +4,7 @@ use super::flat_region::{Corner, Flat, MOST_CORNERS};
 
 /// A plane over the plane across the normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
+pub(in super::super) struct Plane {
     through: Corner,
     /// How it rises along either axis.
     rise: Flat,

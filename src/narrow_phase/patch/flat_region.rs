@@ -12,7 +12,7 @@ pub(super) const ROOM: usize = 2 * MOST_CORNERS + 1;
 
 /// A point in the plane across the normal, metres from the witness.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Flat {
+pub(in super::super) struct Flat {
     pub x: f64,
     pub y: f64,
 }
@@ -54,12 +54,12 @@ impl Flat {
 
 /// A corner of a face: a place in the plane, and a height above it towards the other shape; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
+pub(in super::super) struct Corner {
     pub at: Flat,
     pub height: f64,
 }
 
-pub(super) type Corners = ArrayVec<Corner, MOST_CORNERS>;
+pub(in super::super) type Corners = ArrayVec<Corner, MOST_CORNERS>;
 
 /// The corners of the convex hull, counter-clockwise. What is nearer than `slack` to a side is no corner; of several in one place the highest is.
 ///

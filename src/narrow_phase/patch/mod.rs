@@ -7,19 +7,24 @@
 #[cfg(feature = "effect-patch")]
 mod clipping;
 mod contact_patch;
-#[cfg(feature = "effect-patch")]
+#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod face;
-#[cfg(feature = "effect-patch")]
+#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod face_height;
-#[cfg(feature = "effect-patch")]
+#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod flat_region;
 #[cfg(feature = "effect-patch")]
 mod reduction;
-#[cfg(feature = "effect-patch")]
+#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod round_face;
-#[cfg(feature = "effect-patch")]
+#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod touching_piece;
 
 #[cfg(feature = "effect-patch")]
 pub use clipping::contact_patch;
 pub use contact_patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal};
+
+#[cfg(feature = "effect-derivatives")]
+pub(super) use face::{Face, View, across, face};
+#[cfg(feature = "effect-derivatives")]
+pub(super) use touching_piece::{TouchingPiece, is_wall};

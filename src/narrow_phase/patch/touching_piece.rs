@@ -7,7 +7,7 @@ use super::contact_patch::NoPatch;
 use crate::geometry::{Cells, Core, Mat3, Placement, Shape, Vec3, Voxels};
 
 /// A core with its place. Lengths are metres.
-pub(super) struct TouchingPiece<'a> {
+pub(in super::super) struct TouchingPiece<'a> {
     pub core: Cow<'a, Core>,
     pub swept_radius: f64,
     /// From the core's axes to those of both placements.
@@ -39,6 +39,11 @@ impl<'a> TouchingPiece<'a> {
             ..alone(Cow::Borrowed(core), part.shape.swept_radius() + shape.swept_radius())
         })
     }
+}
+
+/// Without bounds: flat everywhere.
+pub(in super::super) fn is_wall(core: &Core) -> bool {
+    matches!(core, Core::HalfSpace { .. } | Core::Plane { .. })
 }
 
 /// What is in the leaf with that number; none where there is no such leaf, and of compounds.
