@@ -8,6 +8,7 @@ mod clearance;
 mod contacts;
 mod edges;
 mod effects;
+mod left_out;
 mod motions;
 mod moving_scene;
 mod overlays;
