@@ -10,7 +10,7 @@
 //
 // Constraints do not depend on where the bodies are and are made before the clock starts, as is room for the solver. What a call
 // does: the matrix and vector of the objective from both poses, `init` and `solve`. Overlaps come out as a distance of nearly
-// nothing.
+// nothing; what it gives up on is no answer.
 #include <proxsuite/proxqp/dense/dense.hpp>
 
 #include <map>
@@ -128,6 +128,7 @@ class ProxQp {
       objective(p, turn, t);
       solver.init(p.H, p.g, p.A, p.b, p.C, p.l, p.u, scaled);
       solver.solve();
+      if (solver.results.info.status != QPSolverOutput::PROXQP_SOLVED) return double(NAN);
       const Vector& x = solver.results.x;
       return (turn * (p.of_a * x.head(p.of_a.cols())) + t - p.of_b * x.tail(p.of_b.cols())).norm();
     });
