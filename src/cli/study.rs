@@ -31,6 +31,9 @@ pub struct StudyFlags {
     /// `benches/results/peers.csv` where there is one.
     #[arg(long, value_name = "FILE")]
     pub peers: Option<PathBuf>,
+    /// Only this experiment, by the name of its CSV file, such as `distance`; may be given several times.
+    #[arg(long, value_name = "NAME")]
+    pub only: Vec<String>,
     /// Seconds that times are taken for, instead of those of the quick or full run.
     #[arg(long, value_name = "SECONDS", hide = true)]
     pub budget: Option<f64>,
@@ -57,6 +60,7 @@ pub fn run(flags: &StudyFlags, output: &mut dyn Write) -> Result<(), Failed> {
         peers,
         planner: Arc::new(planner().map_err(Failed::failure)?),
         command: std::env::args().collect::<Vec<String>>().join(" "),
+        only: flags.only.clone(),
     };
     let minutes = (expected(effort) / 60.0).ceil();
     eprintln!("clearance study: takes about {minutes:.0} min; leave the machine alone meanwhile");
@@ -70,7 +74,7 @@ pub fn run(flags: &StudyFlags, output: &mut dyn Write) -> Result<(), Failed> {
     let made = study.run(&mut Progress { tell: &mut tell });
     bar.finish_and_clear();
     let page = made.map_err(|error| match error {
-        NoStudy::File { .. } | NoStudy::Content { .. } => Failed::input(error),
+        NoStudy::File { .. } | NoStudy::Content { .. } | NoStudy::Unknown { .. } => Failed::input(error),
         NoStudy::Own(_) => Failed::failure(error),
     })?;
     writeln!(output, "{}", page.display()).map_err(|error| Failed::output(&error))

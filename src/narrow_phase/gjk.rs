@@ -104,6 +104,7 @@ fn search(best: &mut Gjk, difference: &mut Difference, steering: &mut impl Steer
         best.end = end;
         return;
     }
+    steering.begin(best.lower, best.upper);
     let mut last = best.simplex.x;
     for _ in 0..MAX_ITERATIONS {
         if target.must_stop() {

@@ -17,8 +17,14 @@ use crate::geometry::Vec3;
 /// are nearly parallel and nearly touch it can circle for ever.
 const LONGEST: u32 = 64;
 
+/// Cores are far apart when the first direction tells more than this part of their distance.
+const FAR: f64 = 0.5;
+
 /// What chooses the directions of a search.
 pub(super) trait Steering {
+    /// Told what the first direction found: bounds of the distance, metres.
+    fn begin(&mut self, lower: f64, upper: f64);
+
     /// The next direction, of any length, from the nearest point `x` and the vertex `w` found last; none: that of the nearest
     /// feature.
     fn direction(&mut self, x: Vec3, w: Vec3) -> Option<Vec3>;
@@ -33,6 +39,9 @@ pub(super) struct Plain;
 
 impl Steering for Plain {
     #[inline]
+    fn begin(&mut self, _: f64, _: f64) {}
+
+    #[inline]
     fn direction(&mut self, _: Vec3, _: Vec3) -> Option<Vec3> {
         None
     }
@@ -45,8 +54,10 @@ impl Steering for Plain {
 
 /// How the next direction is mixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Rule {
+pub(super) enum Rule {
     Polyak,
+    /// The same for one direction, half way between the first and the vertex it found; then plainly.
+    PolyakOnce,
     Nesterov,
     NesterovNormalised,
 }
@@ -56,6 +67,8 @@ enum Rule {
 pub(super) struct Momentum {
     /// None: plain GJK by now.
     rule: Option<Rule>,
+    /// Takes its place where the cores are far apart.
+    apart: Option<Rule>,
     /// The last direction, of the length its rule gave it.
     last: Vec3,
     /// Directions so far.
@@ -72,12 +85,37 @@ impl Momentum {
             Solver::GjkNesterovNormalised => Some(Rule::NesterovNormalised),
             Solver::Default | Solver::FrankWolfe | Solver::Gjk | Solver::Sat | Solver::Qp | Solver::Exact => None,
         };
-        Self { rule, last: first, round: 1 }
+        Self::by_distance([rule; 2], first)
+    }
+
+    /// One that mixes by `apart` where the first direction shows that the cores are far apart, and by `near` where it does not.
+    pub fn by_distance([near, apart]: [Option<Rule>; 2], first: Vec3) -> Self {
+        Self { rule: near, apart, last: first, round: 1 }
     }
 }
 
 impl Steering for Momentum {
+    #[inline]
+    fn begin(&mut self, lower: f64, upper: f64) {
+        if lower > FAR * upper {
+            self.rule = self.apart;
+        }
+    }
+
+    #[inline]
     fn direction(&mut self, x: Vec3, w: Vec3) -> Option<Vec3> {
+        self.rule?;
+        self.mixed(x, w)
+    }
+
+    fn gave_up(&mut self) -> bool {
+        self.rule.take().is_some()
+    }
+}
+
+impl Momentum {
+    #[inline(never)]
+    fn mixed(&mut self, x: Vec3, w: Vec3) -> Option<Vec3> {
         if self.round == LONGEST {
             self.rule = None;
         }
@@ -86,7 +124,11 @@ impl Steering for Momentum {
         self.round += 1;
         let last = self.last;
         let mixed = match rule {
-            Rule::Polyak => mix(1.0 / (k + 1.0), last, x),
+            Rule::PolyakOnce if self.round > 2 => {
+                self.rule = None;
+                return None;
+            }
+            Rule::Polyak | Rule::PolyakOnce => mix(1.0 / (k + 1.0), last, x),
             Rule::Nesterov => {
                 let weight = (k + 1.0) / (k + 3.0);
                 mix(weight, last, mix(weight, x, w))
@@ -98,10 +140,6 @@ impl Steering for Momentum {
         };
         self.last = mixed;
         Some(mixed)
-    }
-
-    fn gave_up(&mut self) -> bool {
-        self.rule.take().is_some()
     }
 }
 
@@ -142,5 +180,23 @@ mod tests {
         }
         assert!(one.direction(x, w).is_none() && !one.gave_up());
         assert!(Momentum::new(Solver::GjkPolyak, Vec3::z()).gave_up());
+    }
+
+    #[test]
+    fn what_the_first_direction_tells_chooses_the_rule() {
+        let (x, w, first) = (Vec3::x(), Vec3::y(), Vec3::z());
+        let begun = |lower: f64| {
+            let mut momentum = Momentum::by_distance([None, Some(Rule::PolyakOnce)], first);
+            momentum.begin(lower, 1.0);
+            [(); 2].map(|()| momentum.direction(x, w))
+        };
+        assert_eq!(begun(-1.0), [None, None]);
+        assert_eq!(begun(0.49), [None, None]);
+        // One direction half way, and no more.
+        assert_eq!(begun(0.51), [Some((first + x) / 2.0), None]);
+        // Given up, if the one direction has not helped, and only then.
+        let mut momentum = Momentum::by_distance([None, Some(Rule::PolyakOnce)], first);
+        momentum.begin(0.9, 1.0);
+        assert!(momentum.direction(x, w).is_some() && momentum.gave_up() && !momentum.gave_up());
     }
 }

@@ -37,7 +37,7 @@ const _: () = assert!(BOX_AXIS_ERRORS * SUPPORT_ERROR_ULPS >= 336.0);
 pub(super) fn sat(difference: &mut Difference, target: &Target, cost: &mut Cost) -> Option<Sat> {
     if let (Core::Cuboid { half_extents: a }, Core::Cuboid { half_extents: b }) = (difference.a, difference.b) {
         let (a, b) = (*a, *b);
-        return Some(boxes(a, b, Faces::of(a, b, difference.b_in_a), difference, target, cost));
+        return Some(boxes(a, b, Faces::of(a, b, difference.b_in_a), f64::INFINITY, difference, target, cost));
     }
     let a = SmallPolytope::of(difference.a)?;
     let b = SmallPolytope::of(difference.b)?.placed(difference.b_in_a);
@@ -60,17 +60,22 @@ pub(super) fn parted(faces: &Faces, difference: &Difference, target: &Target) ->
     Some(Epa { lower, upper, direction, nearest, termination: Termination::Decided })
 }
 
-/// Two boxes of these half extents, whose faces have been looked along.
+/// Two boxes of these half extents, whose faces have been looked along. With any edges that part them by more than `parted` no more is
+/// asked.
 pub(super) fn boxes(
     a: Vec3,
     b: Vec3,
     faces: Faces,
+    parted: f64,
     difference: &mut Difference,
     target: &Target,
     cost: &mut Cost,
 ) -> Sat {
     let (error, b_in_a) = (difference.error, difference.b_in_a);
-    let axis = best_axis(a, b, b_in_a, faces, target.enough() + 2.0 * error, error);
+    let axis = best_axis(a, b, b_in_a, faces, [target.enough() + 2.0 * error, parted], error);
+    if axis.value > parted {
+        return Sat::Start(opposite(axis.normal));
+    }
     let upper = axis.value + BOX_AXIS_ERRORS * error;
     let contact = |slack| axis.contact(a, b, b_in_a, slack);
     concluded(axis.normal, upper, &contact, difference, target, cost)

@@ -102,39 +102,3 @@ impl ItemBatch for MovingPairs<'_> {
         match self.0.0 {}
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::{CastMode, Context, DEFAULT_RESOLUTION, Find, Mode, Prepared};
-    use super::*;
-    use crate::scene::{Epoch, Scene};
-
-    fn not_built(refused: Option<Refused>, wanted: &str) {
-        let Some(Refused::NotBuilt { field, effect: "motion" }) = refused else { panic!("{refused:?}") };
-        assert_eq!(field, wanted);
-    }
-
-    #[test]
-    fn every_question_about_motions_is_refused_by_name() {
-        let snapshot = Scene::new(Epoch(1)).snapshot();
-        for (motions, field) in [(Layout::Edges, "motions"), (Layout::Path, "waypoints")] {
-            let request = CheckMotions {
-                robot: "arm".to_owned(),
-                positions: vec![0.0, 1.0],
-                motions,
-                mode: Mode::All,
-                find: Find::FirstContact,
-                resolution: CheckMotions::DEFAULT_RESOLUTION,
-                max_states: CheckMotions::DEFAULT_MAX_STATES,
-                context: Context::default(),
-            };
-            not_built(Prepared::check_motions(&*snapshot, &request).err(), field);
-        }
-        let context = Context::default();
-        let (mode, resolution) = (CastMode::First, DEFAULT_RESOLUTION);
-        let shapes = CastShapes { items: Vec::new(), mode, resolution, context: context.clone() };
-        not_built(Casts::new(&snapshot, &shapes).err(), "items");
-        let pairs = CheckMovingPairs { items: Vec::new(), resolution, context };
-        not_built(MovingPairs::new(&snapshot, &pairs).err(), "items");
-    }
-}

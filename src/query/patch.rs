@@ -37,18 +37,3 @@ fn patch(
     cost.patch_cuts += patch.cost.cuts;
     Some(Box::new(patch))
 }
-
-#[cfg(all(test, not(feature = "effect-patch")))]
-mod tests {
-    use super::*;
-    use crate::query::{Mode, PairQuery, Prepared, Refused};
-    use crate::scene::{Epoch, Scene};
-
-    #[test]
-    fn patches_are_refused_by_name() {
-        let context = Context { wants: Wants { patch: true, ..Wants::VERDICT }, ..Context::default() };
-        let query = PairQuery { items: Vec::new(), mode: Mode::All, context };
-        let refused = Prepared::collide(&*Scene::new(Epoch(1)).snapshot(), &query).err();
-        assert_eq!(refused, Some(Refused::NotBuilt { field: "context.wants", effect: "patch" }));
-    }
-}

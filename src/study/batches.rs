@@ -51,7 +51,7 @@ impl Row {
     }
 }
 
-/// A figure of a door, as `clearance bench transports --json` tells it.
+/// A figure of a door, as “clearance bench transports --json” tells it.
 struct DoorRow {
     door: String,
     items: f64,
@@ -111,7 +111,7 @@ pub(super) fn section(study: &Study, advance: &mut dyn FnMut(f64)) -> Result<Sec
             scene.name,
             service.threads(),
             if doors.is_some() {
-                "Below, the doors as `clearance bench transports --json` measured them, with states of a robot with one small shape, so that the door is \
+                "Below, the doors as “clearance bench transports --json” measured them, with states of a robot with one small shape, so that the door is \
                  most of it."
             } else {
                 "The library only: figures of the doors are shown when they are given (clearance bench transports --json > FILE, then --doors FILE)."
@@ -225,9 +225,19 @@ fn figure(rows: &[Row]) -> Figure {
     Figure { caption: "Throughput of one caller, one question at a time".to_owned(), legend, drawings }
 }
 
+/// Each door once, in the order that they come first.
+fn doors_of(rows: &[DoorRow]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for row in rows {
+        if !names.contains(&row.door.as_str()) {
+            names.push(&row.door);
+        }
+    }
+    names
+}
+
 fn figure_of_doors(rows: &[DoorRow]) -> Figure {
-    let mut names: Vec<&str> = rows.iter().map(|row| row.door.as_str()).collect();
-    names.dedup();
+    let names = doors_of(rows);
     let mut series = Vec::new();
     let mut legend = Vec::new();
     for (i, name) in names.iter().enumerate() {
@@ -295,6 +305,15 @@ fn readings(rows: &[Row], doors: Option<&[DoorRow]>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_door_has_one_line_though_sizes_come_by_turns() {
+        let row = |door: &str, items: f64| DoorRow { door: door.to_owned(), items, through: 1e-4, within: 1e-5 };
+        let rows = [row("grpc", 1.0), row("zenoh", 1.0), row("grpc", 64.0), row("zenoh", 64.0)];
+        assert_eq!(doors_of(&rows), ["grpc", "zenoh"]);
+        let names: Vec<String> = figure_of_doors(&rows).legend.into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["grpc", "zenoh", "the same in process"]);
+    }
 
     #[test]
     fn lines_about_doors_are_read_and_others_passed_over() {

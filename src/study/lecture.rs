@@ -80,7 +80,7 @@ pub(super) fn section(study: &Study, advance: &mut dyn FnMut(f64)) -> Result<Sec
         readings: readings(&groups, &beside),
         advice: None,
         figures,
-        summary: Some(summary(&groups)),
+        summary: Some(summary(&groups, &beside)),
         table: table(&groups, &beside),
     })
 }
@@ -153,15 +153,20 @@ fn peer_mark(contenders: &[String], contender: &str) -> usize {
     contenders.iter().filter(|name| *name != "ours").position(|name| name == contender).map_or(9, |index| index + 1)
 }
 
-fn figure_of_peers(beside: &[PeerRow]) -> Figure {
+/// Everybody who was measured, in the order of their names.
+fn contenders_of(beside: &[PeerRow]) -> Vec<String> {
     let mut contenders: Vec<String> = beside.iter().map(|row| row.contender.clone()).collect();
     contenders.sort();
     contenders.dedup();
+    contenders
+}
+
+fn figure_of_peers(beside: &[PeerRow]) -> Figure {
+    let contenders = contenders_of(beside);
     let rung = |row: &&str| {
         let best = fastest(beside, row);
         let values = best.iter().map(|one| (peer_mark(&contenders, &one.contender), one.median, one.p99)).collect();
-        let told: Vec<String> = best.iter().map(|one| format!("{} {}", one.contender, time(one.median))).collect();
-        Rung { name: format!("{}: {}", row.split(' ').next().unwrap_or(row), told.join(", ")), values }
+        Rung { name: row.split(' ').next().unwrap_or(row).to_owned(), values }
     };
     let all: Vec<Rung> = PEER_ROWS.iter().map(rung).collect();
     Figure {
@@ -211,7 +216,7 @@ fn readings(groups: &[Group], beside: &[PeerRow]) -> Vec<String> {
     texts
 }
 
-fn summary(groups: &[Group]) -> (Vec<String>, Vec<Vec<String>>) {
+fn summary(groups: &[Group], beside: &[PeerRow]) -> (Vec<String>, Vec<Vec<String>>) {
     let mut columns = vec!["solver".to_owned()];
     columns.extend(CORNERS.map(|corners| format!("{corners} corners")));
     let row = |solver: Solver| {
@@ -225,6 +230,15 @@ fn summary(groups: &[Group]) -> (Vec<String>, Vec<Vec<String>>) {
     rows.extend(
         LECTURE.map(|(name, cells)| std::iter::once(name.to_owned()).chain(cells.map(str::to_owned)).collect()),
     );
+    // One row of the file for each number of corners.
+    let of_peers = PEER_ROWS.map(|row| fastest(beside, row));
+    rows.extend(contenders_of(beside).into_iter().map(|name| {
+        let cell = |best: &Vec<PeerRow>| {
+            let found = best.iter().find(|one| one.contender == name);
+            found.map_or_else(String::new, |one| format!("{} (p99 {})", time(one.median), time(one.p99)))
+        };
+        std::iter::once(format!("{name} (peers' run)")).chain(of_peers.iter().map(cell)).collect()
+    }));
     (columns, rows)
 }
 

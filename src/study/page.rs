@@ -50,12 +50,13 @@ svg .tick,svg .label{fill:var(--soft)}
 .m6 .line,.m7 .line,.m8 .line,.m9 .line{stroke-dasharray:4 3}
 .wide{overflow-x:auto}
 table{border-collapse:collapse;font-size:.86rem;margin:.6rem 0}
-th,td{padding:.2rem .6rem;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}
+th,td{padding:.2rem .5rem;text-align:right;border-bottom:1px solid var(--grid);white-space:nowrap}
+th,td:last-child{white-space:normal}td:last-child{min-width:5rem}
 th:first-child,td:first-child{text-align:left}th{font-weight:600;vertical-align:bottom}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;font-size:.9rem;margin:.6rem 0}
 dt{color:var(--soft)}dd{margin:0;overflow-wrap:anywhere}
 nav{display:flex;flex-wrap:wrap;gap:.2rem .9rem}nav a{white-space:nowrap}a{color:inherit}
-@media print{:root{--ink:#000;--soft:#333;--paper:#fff;--grid:#ccc;--panel:#fff}body{max-width:none;font-size:11pt}nav{display:none}.plots>div,tr{break-inside:avoid}h2,.what,.legend{break-after:avoid}}
+@media print{:root{--ink:#000;--soft:#333;--paper:#fff;--grid:#ccc;--panel:#fff}body{max-width:none;font-size:11pt}table{font-size:7.5pt}th,td{padding:.1rem .3rem}nav{display:none}.plots>div,tr{break-inside:avoid}h2,.what,.legend{break-after:avoid}}
 ";
 
 fn style() -> String {

@@ -65,6 +65,14 @@ pub enum NoStudy {
         /// What is wrong with it.
         what: String,
     },
+    /// No experiment has that name.
+    #[error("there is no experiment {name}; there are {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// All of them.
+        known: String,
+    },
     /// Something of the study's own making was refused.
     #[error("{0}")]
     Own(String),
@@ -91,9 +99,11 @@ pub struct Study {
     pub planner: Arc<Planner>,
     /// The command line, for the report.
     pub command: String,
+    /// Experiments by the names of their tables; none: all of them.
+    pub only: Vec<String>,
 }
 
-/// An experiment: its name, its share of the time, and what makes it.
+/// An experiment: the name of its table, its share of the time, and what makes it.
 type Experiment = (&'static str, f64, fn(&Study, &mut dyn FnMut(f64)) -> Result<Section, NoStudy>);
 
 /// In the order of the report, without those whose effects were left out of the build. The shares are of the time that is measured;
@@ -106,9 +116,9 @@ const EXPERIMENTS: &[Experiment] = &[
     ("geometry", geometry::SHARE, geometry::section),
     #[cfg(feature = "effect-motion")]
     ("motion", motion::SHARE, motion::section),
-    ("broad phase", broad::SHARE, broad::section),
+    ("broad_phase", broad::SHARE, broad::section),
     ("batches", batches::SHARE, batches::section),
-    ("the lecture's table", lecture::SHARE, lecture::section),
+    ("lecture", lecture::SHARE, lecture::section),
 ];
 
 impl Study {
@@ -118,11 +128,12 @@ impl Study {
     /// A file that cannot be read or written, or one that holds something else.
     pub fn run(&self, progress: &mut Progress) -> Result<PathBuf, NoStudy> {
         let begun = Instant::now();
+        let chosen = self.chosen()?;
         make_folder(&self.out)?;
         let machine = Machine::here(&self.command);
         let mut sections = Vec::new();
         let mut done = 0.0;
-        for &(name, share, make) in EXPERIMENTS {
+        for (name, share, make) in chosen {
             (progress.tell)(name, done);
             let section = make(self, &mut |part| (progress.tell)(name, done + share * part))?;
             write(&self.out.join(format!("{}.csv", section.table.name)), &section.table.csv())?;
@@ -134,6 +145,16 @@ impl Study {
         write(&page, &page::html(&sections, &machine, begun.elapsed(), self.effort))?;
         write(&self.out.join("machine.csv"), &machine.table().csv())?;
         Ok(page)
+    }
+
+    /// The experiments that are wanted, in the order of the report; each as long as in a whole study.
+    fn chosen(&self) -> Result<Vec<Experiment>, NoStudy> {
+        let names: Vec<&str> = EXPERIMENTS.iter().map(|(name, ..)| *name).collect();
+        if let Some(unknown) = self.only.iter().find(|wanted| !names.contains(&wanted.as_str())) {
+            return Err(NoStudy::Unknown { name: unknown.clone(), known: names.join(", ") });
+        }
+        let is_wanted = |name: &str| self.only.is_empty() || self.only.iter().any(|wanted| wanted == name);
+        Ok(EXPERIMENTS.iter().filter(|(name, ..)| is_wanted(name)).copied().collect())
     }
 }
 

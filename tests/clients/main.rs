@@ -4,6 +4,7 @@ mod casts;
 #[path = "../service/support/daemon.rs"]
 #[expect(dead_code, reason = "tests of the service look into it as well")]
 mod daemon;
+mod estimates;
 #[path = "../../examples/first_query.rs"]
 #[expect(dead_code, reason = "the example's own way in")]
 mod first_query;

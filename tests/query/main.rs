@@ -9,6 +9,7 @@ mod contacts;
 mod edges;
 mod effects;
 mod effects_random;
+mod left_out;
 mod motions;
 mod moving_scene;
 mod overlays;

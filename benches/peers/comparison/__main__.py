@@ -1,4 +1,4 @@
-"""Times our narrow phase beside Coal and parry on the same pairs in one run, and prints the table. See README.md."""
+"""Times our narrow phase beside Coal, parry, FCL and ProxQP on the same pairs in one run, and prints the table. See README.md."""
 
 import argparse
 import shlex

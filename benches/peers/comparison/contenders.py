@@ -36,9 +36,10 @@ class Contender(Program):
 
 
 OURS, COAL, PARRY, PARRY_SINGLE = "ours", "Coal", "parry f64", "parry f32"
+FCL, PROXQP = "FCL", "ProxQP"
 
 #: The peers that a target refers to; single precision is shown only.
-PEERS = (COAL, PARRY)
+PEERS = (COAL, PARRY, FCL, PROXQP)
 
 
 def start_all(folder, cpu, solver=None):
@@ -49,6 +50,8 @@ def start_all(folder, cpu, solver=None):
         COAL: [folder / "coal", pairs],
         PARRY: [parry, "f64", pairs],
         PARRY_SINGLE: [parry, "f32", pairs],
+        FCL: [folder / "fcl", pairs],
+        PROXQP: [folder / "proxqp", pairs],
         OURS: [folder / "rust/release/ours", pairs],
     }
     settings = {OURS: f"/{solver}"} if solver else {}

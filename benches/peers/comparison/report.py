@@ -2,6 +2,7 @@
 
 import csv
 import os
+import subprocess
 from datetime import datetime, timezone
 from importlib.metadata import version
 
@@ -67,13 +68,14 @@ def microseconds(nanoseconds):
 
 def preamble(settings):
     return [
-        "# Our narrow phase beside Coal and parry",
+        "# Our narrow phase beside Coal, parry, FCL and ProxQP",
         "",
         f"`{settings.command}` on {datetime.now(timezone.utc):%Y-%m-%d}, commit {commit()},",
         f"{processor()}, one core of {os.cpu_count()} (load average {os.getloadavg()[0]:.1f}),",
         f"{settings.rounds} rounds, {settings.count} pairs a set (meshes: {settings.count // 10}).",
         f"Coal {version('coal')} (its wheel, any x86-64), parry 0.31.1 (target-cpu=native), ours for any x86-64 with",
-        "wider instructions chosen at run time.",
+        f"wider instructions chosen at run time. FCL {fcl_version()} (Debian's library and its caller, any x86-64), ProxQP",
+        f"{version('proxsuite')} (its dense solver, target-cpu=native, vectorised).",
         "",
         "Cold: each pair once a pass. Times are the median over the pairs, and the 99th percentile of their medians over",
         "the rounds. Ratio: ours to the best peer's, median over the rounds of the ratio of medians, with the 95 %",
@@ -82,6 +84,11 @@ def preamble(settings):
         "99th percentile of the error, metres, is no worse than that peer's. Tracks (`warm`): ours from its cache",
         "against ours without.",
     ]
+
+
+def fcl_version():
+    command = ["pkg-config", "--modversion", "fcl"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def remarks(results):

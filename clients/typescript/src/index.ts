@@ -8,6 +8,7 @@ export * from "./answers.js";
 export * from "./client.js";
 export * from "./edits.js";
 export * from "./errors.js";
+export * from "./estimates.js";
 export * from "./geometry.js";
 export * from "./question.js";
 export * from "./robots.js";

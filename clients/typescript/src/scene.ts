@@ -2,13 +2,14 @@
 
 import { checkCount, motionsOf, statesOf, type Motions, type States } from "./answers.js";
 import type { Client } from "./client.js";
-import { subject, type Asked, type EditInit } from "./edits.js";
-import { bytesOf } from "./geometry.js";
-import { callOf, contextOf, modeOf, type Call, type Question } from "./question.js";
+import type { Asked, EditInit } from "./edits.js";
+import { estimateRequest, type Priced, type Prices } from "./estimates.js";
+import { callOf, contextOf, type Call, type Question } from "./question.js";
+import * as requests from "./requests.js";
+import type { Rows } from "./requests.js";
 import * as v1 from "./v1.js";
 
-/** Vectors of joint positions: radians, metres for sliding joints. */
-export type Rows = readonly ArrayLike<number>[];
+export type { Rows } from "./requests.js";
 
 /** What `Scene.apply` may be held to. */
 export interface Expected extends Call {
@@ -60,15 +61,8 @@ export class Scene {
 
   /** Is the robot free in these states? Measures the nearest pairs unless the question wants something else. */
   async checkStates(robot: string, states: Rows, question: Question = {}): Promise<States> {
-    const { answer } = await this.client.queries.checkStates(
-      {
-        context: contextOf(this.name, question, "distance", { answerForm: v1.AnswerForm.BULK }),
-        robot,
-        positions: table("states", states),
-        mode: modeOf(question),
-      },
-      callOf(question),
-    );
+    const request = requests.checkStates(this.name, robot, states, question);
+    const { answer } = await this.client.queries.checkStates(request, callOf(question));
     return statesOf(there(answer), states.length);
   }
 
@@ -77,12 +71,8 @@ export class Scene {
    * without.
    */
   async lookAtStates(robot: string, states: Rows, question: Question = {}): Promise<v1.Answer> {
-    const context = contextOf(this.name, question, "witness");
-    context.wants = { ...context.wants, pairs: true } as v1.Wants;
-    const { answer } = await this.client.queries.checkStates(
-      { context, robot, positions: table("states", states), mode: modeOf(question) },
-      callOf(question),
-    );
+    const request = requests.lookAtStates(this.name, robot, states, question);
+    const { answer } = await this.client.queries.checkStates(request, callOf(question));
     checkCount("states", states.length, there(answer).items.length);
     return there(answer);
   }
@@ -92,32 +82,15 @@ export class Scene {
    * sampled.
    */
   async checkMotions(robot: string, starts: Rows, goals: Rows, question: Question = {}): Promise<Motions> {
-    if (starts.length !== goals.length) throw new RangeError(`goals: are ${goals.length}, starts are ${starts.length}`);
-    const response = await this.client.queries.checkMotions(
-      {
-        context: contextOf(this.name, question, "verdict", { answerForm: v1.AnswerForm.BULK }),
-        robot,
-        positions: table("starts and goals", starts.flatMap((start, i) => [start, goals[i] as ArrayLike<number>])),
-        mode: modeOf(question),
-        effort: question.effort ?? {},
-      },
-      callOf(question),
-    );
+    const request = requests.checkMotions(this.name, robot, starts, goals, question);
+    const response = await this.client.queries.checkMotions(request, callOf(question));
     return motionsOf(there(response.answer), response.bulk, starts.length);
   }
 
   /** Is the robot free all along a path, and where is it blocked first? `stoppedAt` of the answer. */
   async checkPath(robot: string, waypoints: Rows, question: Question = {}): Promise<Motions> {
-    const response = await this.client.queries.checkPath(
-      {
-        context: contextOf(this.name, question, "verdict", { answerForm: v1.AnswerForm.BULK }),
-        robot,
-        waypoints: table("waypoints", waypoints),
-        mode: modeOf(question),
-        effort: question.effort ?? {},
-      },
-      callOf(question),
-    );
+    const request = requests.checkPath(this.name, robot, waypoints, question);
+    const response = await this.client.queries.checkPath(request, callOf(question));
     return motionsOf(there(response.answer), response.bulk, Math.max(waypoints.length - 1, 0));
   }
 
@@ -126,68 +99,87 @@ export class Scene {
    * the question wants something else.
    */
   async distance(subjects: readonly Asked[] = [], question: Question = {}): Promise<v1.Answer> {
-    const context = contextOf(this.name, question, "witness");
-    const request = { context, items: items(subjects), mode: modeOf(question) };
+    const request = requests.distance(this.name, subjects, question);
     return there((await this.client.queries.distance(request, callOf(question))).answer);
   }
 
   /** Which bodies does each subject touch? Without subjects: which pairs of all bodies touch. */
   async collide(subjects: readonly Asked[] = [], question: Question = {}): Promise<v1.Answer> {
-    const context = contextOf(this.name, question, "verdict");
-    const request = { context, items: items(subjects), mode: modeOf(question) };
+    const request = requests.collide(this.name, subjects, question);
     return there((await this.client.queries.collide(request, callOf(question))).answer);
   }
 
   /** Which bodies are within that many metres of each subject? `pairs` of each item. */
   async clearance(within: number, subjects: readonly Asked[] = [], question: Question = {}): Promise<v1.Answer> {
-    const { answer } = await this.client.queries.clearance(
-      {
-        context: contextOf(this.name, question, "distance"),
-        within,
-        mode: modeOf(question),
-        subjects: { case: "items", value: { items: items(subjects) } },
-      },
-      callOf(question),
-    );
-    return there(answer);
+    const request = requests.clearance(this.name, within, subjects, question);
+    return there((await this.client.queries.clearance(request, callOf(question))).answer);
   }
 
   /** Which pairs of links, and of links and bodies, are within that many metres in each state? */
   async clearanceOfStates(robot: string, states: Rows, within: number, question: Question = {}): Promise<v1.Answer> {
-    const { answer } = await this.client.queries.clearance(
-      {
-        context: contextOf(this.name, question, "distance"),
-        within,
-        mode: modeOf(question),
-        subjects: { case: "states", value: { robot, positions: table("states", states) } },
-      },
-      callOf(question),
-    );
+    const request = requests.clearanceOfStates(this.name, robot, states, within, question);
+    const { answer } = await this.client.queries.clearance(request, callOf(question));
     checkCount("states", states.length, there(answer).items.length);
     return there(answer);
+  }
+
+  /**
+   * What would `checkStates` cost, and the others below? One row for each output and tolerance: a sample of the items is asked, and
+   * timed. What the question wants, its accuracy and `stopAtFirst` do not count, as each row has its own.
+   */
+  async estimateStates(robot: string, states: Rows, prices: Prices = {}, question: Question = {}): Promise<v1.EstimateResponse> {
+    const value = requests.checkStates(this.name, robot, states, question);
+    const told = await this.estimate({ case: "checkStates", value }, prices, question);
+    checkCount("states", states.length, Number(told.items));
+    return told;
+  }
+
+  async estimateMotions(robot: string, starts: Rows, goals: Rows, prices: Prices = {}, question: Question = {}): Promise<v1.EstimateResponse> {
+    const value = requests.checkMotions(this.name, robot, starts, goals, question);
+    const told = await this.estimate({ case: "checkMotions", value }, prices, question);
+    checkCount("motions", starts.length, Number(told.items));
+    return told;
+  }
+
+  async estimatePath(robot: string, waypoints: Rows, prices: Prices = {}, question: Question = {}): Promise<v1.EstimateResponse> {
+    const value = requests.checkPath(this.name, robot, waypoints, question);
+    const told = await this.estimate({ case: "checkPath", value }, prices, question);
+    checkCount("motions", Math.max(waypoints.length - 1, 0), Number(told.items));
+    return told;
+  }
+
+  /** Without subjects: all pairs, as one item. */
+  async estimateDistance(subjects: readonly Asked[] = [], prices: Prices = {}, question: Question = {}): Promise<v1.EstimateResponse> {
+    const value = requests.distance(this.name, subjects, question);
+    return await this.estimate({ case: "distance", value }, prices, question);
+  }
+
+  async estimateCollide(subjects: readonly Asked[] = [], prices: Prices = {}, question: Question = {}): Promise<v1.EstimateResponse> {
+    const value = requests.collide(this.name, subjects, question);
+    return await this.estimate({ case: "collide", value }, prices, question);
+  }
+
+  async estimateClearance(
+    within: number,
+    subjects: readonly Asked[] = [],
+    prices: Prices = {},
+    question: Question = {},
+  ): Promise<v1.EstimateResponse> {
+    const value = requests.clearance(this.name, within, subjects, question);
+    return await this.estimate({ case: "clearance", value }, prices, question);
   }
 
   /** What the question says, for requests of the stubs. */
   context(question: Question = {}): ReturnType<typeof contextOf> {
     return contextOf(this.name, question, "verdict");
   }
+
+  private async estimate(of: Priced, prices: Prices, question: Question): Promise<v1.EstimateResponse> {
+    return await this.client.queries.estimate(estimateRequest(of, prices), callOf(question));
+  }
 }
 
 function there(answer: v1.Answer | undefined): v1.Answer {
   if (answer === undefined) throw new TypeError("the daemon's reply has no answer");
   return answer;
-}
-
-function items(subjects: readonly Asked[]) {
-  return subjects.length > 0 ? subjects.map(subject) : [{ kind: { case: "allPairs" as const, value: {} } }];
-}
-
-function table(name: string, rows: Rows) {
-  const width = rows[0]?.length ?? 0;
-  const numbers = new Float64Array(width * rows.length);
-  for (const [i, row] of rows.entries()) {
-    if (row.length !== width) throw new RangeError(`${name}[${i}]: has ${row.length} numbers, the first has ${width}`);
-    numbers.set(row, i * width);
-  }
-  return { form: { case: "littleEndian" as const, value: bytesOf(numbers) } };
 }

@@ -32,7 +32,7 @@ async fn scene(door: &impl Door) {
     let cone = |i: u64| {
         let x = if i == BALLS { 1.5 * (i - 1) as f64 + 0.1 } else { 1.5 * i as f64 };
         let angle = 0.2 * i as f64;
-        let rotation = Some(v1::Quaternion { w: angle.cos(), x: 0.0, y: angle.sin(), z: 0.0 });
+        let rotation = Some(v1::Quaternion { w: 1.0, x: 0.0, y: angle, z: 0.0 });
         let pose = v1::Pose { rotation, ..at(x, 2.0, 0.0) };
         add(&format!("{i}"), shape(v1::shape::Core::Cone(v1::Cone { radius: 0.3, half_length: 0.4 })), pose)
     };
