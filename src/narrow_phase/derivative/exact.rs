@@ -1,12 +1,12 @@
 //! The derivatives of a pair where they exist, from the features that face one another.
 
-use nalgebra::{Matrix2 as Mat2, SMatrix};
+use nalgebra::SMatrix;
 
 use super::super::outcome::Separation;
 use super::super::patch::{NoPatch, TouchingPiece, across, is_wall};
 use super::polish::{Polished, polish};
 use super::response::{Change, Response};
-use super::side::Side;
+use super::side::{Mat2, Side};
 use crate::geometry::{Placement, Shape, Vec3};
 
 /// Where derivatives come from.

@@ -22,9 +22,8 @@
 //! every feature.)
 
 use arrayvec::ArrayVec;
-use nalgebra::{Matrix2 as Mat2, Vector2 as Vec2};
 
-use super::side::Side;
+use super::side::{Mat2, Side, Vec2};
 use crate::geometry::Vec3;
 
 /// Flat directions of two sides that are nearer to parallel than this (sine) are one.

@@ -9,7 +9,12 @@ use arrayvec::ArrayVec;
 use super::super::patch::{Face, PatchCost, TouchingPiece, View, face, is_wall};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::{Core, Vec3, length};
-use nalgebra::{Matrix2 as Mat2, Vector2 as Vec2};
+
+/// In the plane across a normal.
+pub(super) type Vec2 = nalgebra::Vector2<f64>;
+
+/// A tensor there.
+pub(super) type Mat2 = nalgebra::Matrix2<f64>;
 
 /// Directions that are turned by less than this are one: tangent of the angle.
 const TILT: f64 = 1e-9;

@@ -14,7 +14,7 @@ use super::reduction::{Place, Places, reduce};
 use super::touching_piece::{TouchingPiece, is_wall};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
 use crate::geometry::vector::opposite;
-use crate::geometry::{Core, Placement, Shape, Vec3, length};
+use crate::geometry::{Placement, Shape, Vec3, length};
 
 /// Largest tilt, radians: a corner of a box that stands on its tip is still one.
 const MOST_TILT: f64 = 0.5;
