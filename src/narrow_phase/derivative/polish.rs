@@ -4,7 +4,6 @@
 //! and with d = n . y the step is dn = M^-1 P y, M = d I + RA + RB, the same M that tells the derivatives: where it is positive the steps
 //! converge quadratically, to the same stationary point that the separation was near.
 
-
 use super::super::patch::{TouchingPiece, across};
 use super::super::support::support;
 use super::side::{Mat2, Vec2};
