@@ -83,6 +83,9 @@ async fn time_that_is_over_is_told_and_nothing_is_made_up() {
     for row in &estimated.rows {
         assert_eq!((row.items, row.complete, row.times, row.widths, row.mean_cost), (0, false, None, None, None));
     }
+    let endless = Limits { max_estimate_seconds: usize::MAX, ..Limits::default() };
+    let one = Estimate { sample: Some(1), tolerances: vec![1e-3], ..estimate() };
+    assert_eq!(ask(endless, one).await.unwrap().end, EstimateEnd::Complete);
     let capped = Limits { max_estimate_seconds: 0, ..Limits::default() };
     assert_eq!(ask(capped, estimate()).await.unwrap().end, EstimateEnd::Time);
 }
