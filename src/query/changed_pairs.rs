@@ -2,12 +2,13 @@
 
 use super::pairs::{Pairs, party};
 use super::search::Search;
-use crate::scene::{Body, BodyId, Changes, Snapshot};
+use crate::scene::{Body, BodyId, Changes, Loners, Snapshot};
 
 impl Pairs<'_> {
     /// Offers every pair that changed, once: those with a changed side first, then those that only an entry changed.
     pub(super) fn changed(&self, changes: &Changes, search: &mut Search) {
-        for body in changes.bodies().iter().filter_map(|change| self.walker(change.id)) {
+        let mut loners = self.snapshot().loners();
+        for body in changes.bodies().iter().filter_map(|change| self.walker(change.id, &mut loners)) {
             if search.is_settled() {
                 return;
             }
@@ -18,7 +19,7 @@ impl Pairs<'_> {
             });
         }
         let named = changes.bodies_of_entries(self.snapshot());
-        for body in named.iter().filter(|id| !changes.has_body(**id)).filter_map(|id| self.walker(*id)) {
+        for body in named.iter().filter(|id| !changes.has_body(**id)).filter_map(|id| self.walker(*id, &mut loners)) {
             if search.is_settled() {
                 return;
             }
@@ -31,9 +32,9 @@ impl Pairs<'_> {
         }
     }
 
-    fn walker(&self, id: BodyId) -> Option<&Body> {
+    fn walker(&self, id: BodyId, loners: &mut Loners) -> Option<&Body> {
         let body = self.snapshot().body(id)?;
-        (self.passes(body) && !self.snapshot().meets_no_body(body.member())).then_some(&**body)
+        (self.passes(body) && !loners.has(body.member())).then_some(&**body)
     }
 }
 

@@ -124,12 +124,12 @@ impl<'a> Pairs<'a> {
     /// Every body against those with higher ids, so that each pair comes once. Quiet bodies do not look for others, and are found by
     /// all of them.
     pub(super) fn everything(&self, search: &mut Search) {
-        let quiet = self.snapshot.quiet_bodies();
+        let (quiet, mut loners) = (self.snapshot.quiet_bodies(), self.snapshot.loners());
         for body in self.snapshot.bodies().filter(|b| self.passes(b)) {
             if search.is_settled() {
                 return;
             }
-            if self.snapshot.meets_no_body(body.member()) || quiet.has(body.member()) {
+            if loners.has(body.member()) || quiet.has(body.member()) {
                 continue;
             }
             self.against_bodies(search, &party(body), body.bounds, &mut |other| {

@@ -75,8 +75,9 @@ impl<'a> RobotParts<'a> {
         let robot = snapshot.robot(robot).ok_or_else(not_found)?;
         let model: &RobotModel = &robot.model;
         let mut parts = Vec::with_capacity(model.links().iter().map(|link| link.shapes.len()).sum());
+        let mut loners = snapshot.loners();
         for (link, l) in (0u32..).zip(model.links()) {
-            let meets_no_body = snapshot.meets_no_body(robot.link(link));
+            let meets_no_body = loners.has(robot.link(link));
             for (shape_index, of_link) in (0u32..).zip(&l.shapes) {
                 let (shape, in_link, ball) = (&*of_link.shape, &of_link.pose, of_link.ball);
                 parts.push(LinkPart { link, shape_index, shape, in_link, ball, held: None, meets_no_body });

@@ -1,6 +1,6 @@
 //! What has a scene declared of the pairs that a question is about? Told by the declarations alone, wherever the bodies are.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::pair_table::parties_of;
 use super::party::{Member, PartyKey};
@@ -60,24 +60,16 @@ impl Snapshot {
         }
     }
 
-    /// Whether everything that is declared of a body or link and any body is empty, and something is declared of it and everybody:
-    /// then nobody need look for what it meets. `false` does not say that there is a pair.
+    /// Whether [`Loners`] has the member.
     #[must_use]
     pub fn meets_no_body(&self, member: Member<'_>) -> bool {
-        if !self.declares_effects() {
-            return false;
-        }
-        let mut with_everybody = false;
-        for (party, _) in parties_of(member) {
-            // No entry that names a robot speaks of a body.
-            for (other, effects) in self.effects.of(party).filter(|(other, _)| !other.is_of_robot()) {
-                if !effects.is_empty() {
-                    return false;
-                }
-                with_everybody |= other == PartyKey::EVERYTHING;
-            }
-        }
-        with_everybody
+        self.loners().has(member)
+    }
+
+    /// To ask of many members whether they meet nobody.
+    #[must_use]
+    pub fn loners(&self) -> Loners<'_> {
+        Loners { snapshot: self, permits_nothing: BTreeMap::new() }
     }
 
     /// Of the groups that are declared empty with themselves the one that is used most: its quiet bodies need not look for each
@@ -106,6 +98,30 @@ impl Snapshot {
             keys.extend(body.member().many);
         }
         Some(Keys::Some(keys))
+    }
+}
+
+/// Bodies and links that need not look for what they meet: everything that is declared of them and any body is empty, and something is
+/// declared of them and everybody.
+#[derive(Clone, Debug)]
+pub struct Loners<'a> {
+    snapshot: &'a Snapshot,
+    /// Of parties asked about so far: whether no declaration that names one permits anything with a body. Rows may be long, and many
+    /// members have the same.
+    permits_nothing: BTreeMap<PartyKey, bool>,
+}
+
+impl Loners<'_> {
+    /// Whether it is one. `false` does not say that there is somebody whom it meets.
+    pub fn has(&mut self, member: Member<'_>) -> bool {
+        let effects = &self.snapshot.effects;
+        let with_everybody = |party| effects.get(party, PartyKey::EVERYTHING).is_some_and(Effects::is_empty);
+        // No entry that names a robot speaks of a body.
+        let permits = |(other, effects): (PartyKey, Effects)| !other.is_of_robot() && !effects.is_empty();
+        self.snapshot.declares_effects()
+            && parties_of(member).any(|(party, _)| with_everybody(party))
+            && parties_of(member)
+                .all(|(party, _)| *self.permits_nothing.entry(party).or_insert_with(|| !effects.of(party).any(permits)))
     }
 }
 

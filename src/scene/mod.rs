@@ -33,7 +33,7 @@ mod tests;
 
 pub use body::Body;
 pub use change_log::{BodyChange, ChangeKinds, Changes, RobotChange};
-pub use declared::{Asker, Declaration, QuietBodies};
+pub use declared::{Asker, Declaration, Loners, QuietBodies};
 pub use edit::{BodyRef, Edit, NewBody};
 pub use effects::{Effect, Effects};
 pub use hypothesis::Hypothesis;

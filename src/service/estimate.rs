@@ -205,7 +205,9 @@ impl View {
     pub fn estimate(&self, estimate: &Estimate) -> Result<Estimated, ServiceError> {
         let begun = Instant::now();
         let rows = estimate.rows(&self.limits)?;
-        let stop = self.stop.not_after(begun + estimate.longest(&self.limits)?);
+        // A cap beyond what the clock can tell is none.
+        let until = begun.checked_add(estimate.longest(&self.limits)?);
+        let stop = until.map_or_else(|| self.stop.clone(), |until| self.stop.not_after(until));
         estimate.check_limits(&self.limits)?;
         let plain = estimate.question.clone().asking(Output::Verdict, None);
         let (items, width) = {

@@ -10,6 +10,9 @@ use crate::service::{Change, Config, Patience, Service, Target};
 
 const BOXES: usize = 40;
 
+/// Of a question for distances: a build without patches has no price for them.
+const OUTPUTS: usize = 4 + cfg!(feature = "effect-patch") as usize;
+
 async fn service(limits: Limits) -> (Arc<Service>, Target) {
     let service = Service::new(&Config { threads: 1, limits }).unwrap();
     service.create_scene("cell", &SceneOptions::default()).unwrap();
@@ -45,7 +48,7 @@ async fn every_row_has_the_sample_and_brackets_as_narrow_as_was_asked() {
     let estimated = ask(patient(), Estimate { sample: Some(10), ..estimate() }).await.unwrap();
     assert_eq!((estimated.end, estimated.items, estimated.sample), (EstimateEnd::Complete, BOXES, 10));
     assert_eq!((estimated.revision, estimated.turns), (Revision(1), TURNS));
-    assert_eq!(estimated.rows.len(), 5 * LADDER.len());
+    assert_eq!(estimated.rows.len(), OUTPUTS * LADDER.len());
     assert_eq!(estimated.asked, (TURNS * 10 * (estimated.rows.len() + 1) + estimated.rows.len()) as u64);
     let mut narrow = 0;
     for row in &estimated.rows {
@@ -59,7 +62,7 @@ async fn every_row_has_the_sample_and_brackets_as_narrow_as_was_asked() {
         assert_eq!(widths.wider == 0, widths.largest <= tolerance, "{row:?}");
         narrow += usize::from(tolerance > 0.0 && widths.wider == 0);
     }
-    assert_eq!(narrow, 5 * (LADDER.len() - 1));
+    assert_eq!(narrow, OUTPUTS * (LADDER.len() - 1));
 }
 
 #[tokio::test]
@@ -80,6 +83,9 @@ async fn time_that_is_over_is_told_and_nothing_is_made_up() {
     for row in &estimated.rows {
         assert_eq!((row.items, row.complete, row.times, row.widths, row.mean_cost), (0, false, None, None, None));
     }
+    let endless = Limits { max_estimate_seconds: usize::MAX, ..Limits::default() };
+    let one = Estimate { sample: Some(1), tolerances: vec![1e-3], ..estimate() };
+    assert_eq!(ask(endless, one).await.unwrap().end, EstimateEnd::Complete);
     let capped = Limits { max_estimate_seconds: 0, ..Limits::default() };
     assert_eq!(ask(capped, estimate()).await.unwrap().end, EstimateEnd::Time);
 }

@@ -20,7 +20,7 @@ through_doors_with_streams!(
 );
 
 fn limits() -> Limits {
-    Limits { max_stream_in_flight: 8, max_items: 200, max_estimate_seconds: 60, ..Limits::default() }
+    Limits { max_stream_in_flight: 8, max_items: 100, max_estimate_seconds: 60, ..Limits::default() }
 }
 
 async fn scene(door: &impl Streams) {
@@ -123,7 +123,8 @@ async fn questions_of_every_kind_are_answered_as_calls_are(door: &impl Streams) 
     assert_eq!(answers, (11..).zip(called).collect());
     // An estimate is a question, too, but measures anew each time.
     let question = v1::estimate_request::Question::CheckStates(of_states);
-    let estimate = v1::EstimateRequest { question: Some(question), sample: Some(1), ..Default::default() };
+    let outputs = vec![v1::Output::Verdict.into()];
+    let estimate = v1::EstimateRequest { question: Some(question), outputs, sample: Some(1), ..Default::default() };
     let estimated = ask(door, vec![asked(22, Question::Estimate(estimate))]).await.remove(0);
     let Some(Outcome::Estimate(estimated)) = estimated.outcome else { panic!("{estimated:?}") };
     assert_eq!((estimated.end(), estimated.sample), (v1::EstimateEnd::Complete, 1));

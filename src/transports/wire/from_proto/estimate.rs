@@ -67,8 +67,7 @@ fn seconds(time: f64) -> Result<Duration, ServiceError> {
 fn output(index: usize, number: i32) -> Result<Output, ServiceError> {
     let path = Path::root_item("outputs", index);
     match v1::Output::try_from(number) {
-        Ok(v1::Output::Unspecified) => Err(path.invalid("is unspecified")),
-        Ok(known) => Ok(known_output(known).unwrap_or(Output::Verdict)),
+        Ok(known) => known_output(known).ok_or_else(|| path.invalid("is unspecified")),
         Err(_) => Err(unknown_value(&path, number)),
     }
 }
