@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use tokio::runtime::Handle;
 use tokio::sync::watch;
 use tokio::task::{JoinError, JoinSet};
 
@@ -143,7 +144,9 @@ impl Daemon {
             watched.spawn(metrics.endpoint.serve(Arc::clone(&self.service), metrics.registry));
         }
         let (drain, told_to_drain) = watch::channel(false);
-        let mut serving = tokio::spawn(self.doors.serve(Arc::clone(&self.service), told_to_drain));
+        // On handles of our own, here and below: a runtime that ends drops a new task at once, and what zenoh does then panics while
+        // the plain `spawn` looks at the current handle.
+        let mut serving = Handle::current().spawn(self.doors.serve(Arc::clone(&self.service), told_to_drain));
         tokio::select! {
             ended = &mut serving => return Err(closed(ended)),
             () = stop => {}
@@ -209,7 +212,8 @@ impl Doors {
         #[cfg(feature = "zenoh")]
         if let Some(zenoh) = self.zenoh {
             let served = zenoh.serve(drained(told_to_drain.clone()));
-            serving.spawn(async { served.await.map_err(|error| RunError::of("zenoh", &error)) });
+            let served = async { served.await.map_err(|error| RunError::of("zenoh", &error)) };
+            serving.spawn_on(served, &Handle::current());
         }
         if serving.is_empty() {
             drained(told_to_drain.clone()).await;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use prost::Message;
+use tokio::runtime::Handle;
 use tokio::sync::watch;
 use tokio::task::{AbortHandle, JoinSet};
 use zenoh::bytes::Encoding;
@@ -93,7 +94,9 @@ impl Scenes {
                 .await?;
             let publication =
                 Publication { desk: Arc::clone(&self.desk), scene: name.clone(), epoch: scene.epoch, publisher };
-            let publication = self.publications.spawn(publication.run());
+            // On a handle of our own: a runtime that ends drops the task at once, and zenoh's publisher, as it goes, enters a
+            // runtime, which panics while `spawn` itself looks at the current one.
+            let publication = self.publications.spawn_on(publication.run(), &Handle::current());
             let _token = token(&self.session, keys.scene_alive(&name)).await?;
             self.by_name.insert(name, Told { epoch: scene.epoch, publication, _token });
         }
@@ -176,5 +179,54 @@ async fn unheard(mut heard: watch::Receiver<bool>) {
             () = tokio::time::sleep(GRACE) => return,
             _ = heard.wait_for(|heard| *heard) => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use tokio::runtime::Builder;
+
+    use super::super::config::Config;
+    use super::*;
+    use crate::limits::Limits;
+    use crate::scene::SceneOptions;
+    use crate::service::Service;
+
+    /// Whether the runtime drops what it is given.
+    fn takes_no_tasks() -> bool {
+        let (alive, gone) = mpsc::channel::<()>();
+        let task = Handle::current().spawn(async move {
+            std::future::pending::<()>().await;
+            drop(alive);
+        });
+        let is_gone = gone.try_recv() == Err(mpsc::TryRecvError::Disconnected);
+        task.abort();
+        is_gone
+    }
+
+    #[test]
+    fn a_scene_that_comes_while_the_runtime_ends_is_let_go_in_peace() {
+        let runtime = Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap();
+        let (ready, is_ready) = mpsc::channel();
+        let (told, followed) = mpsc::channel();
+        runtime.spawn(async move {
+            let service = Service::new(&crate::service::Config { threads: 1, ..Default::default() }).unwrap();
+            let config = Config::on_loopback("ends");
+            let session = zenoh::open(config.of_zenoh(&Limits::default()).unwrap()).await.unwrap();
+            let desk = Desk::new(&session, &service, &config.keys().unwrap()).await.unwrap();
+            let mut scenes = Scenes::new(&session, &desk);
+            desk.service.create_scene("late", &SceneOptions::default()).unwrap();
+            ready.send(()).unwrap();
+            while !takes_no_tasks() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            told.send(scenes.follow().await.is_ok()).unwrap();
+        });
+        is_ready.recv().unwrap();
+        runtime.shutdown_background();
+        // It went through to the end, and did not panic.
+        assert_eq!(followed.recv(), Ok(true));
     }
 }

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use prost::Message;
+use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 use tokio::task::JoinSet;
 use tokio_stream::StreamExt;
@@ -175,7 +176,8 @@ impl Poses {
         let feed = Feed { messages, bytes: Arc::default(), last: Instant::now() };
         let begun =
             fed(Arc::clone(&self.desk), self.session.clone(), scene.to_owned(), (sent, Arc::clone(&feed.bytes)));
-        self.running.spawn(begun);
+        // As with publications: what a task holds of zenoh must not be dropped inside `spawn`.
+        self.running.spawn_on(begun, &Handle::current());
         let message = v1::PoseStreamRequest { scene: scene.to_owned(), ..waiting.message };
         // Its other end waits in the task.
         _ = feed.take(Waiting { message, ..waiting });
