@@ -23,7 +23,6 @@ mod box_gaps;
 mod bracketing;
 mod convex;
 mod course;
-#[cfg(feature = "effect-derivatives")]
 mod derivative;
 mod double_double;
 mod element;
@@ -79,7 +78,8 @@ mod witness;
 
 pub use batch::{PairQuestion, separations};
 #[cfg(feature = "effect-derivatives")]
-pub use derivative::{DerivativeMethod, Derivatives, TwistMatrix, derivatives};
+pub use derivative::derivatives;
+pub use derivative::{DerivativeCost, DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives, TwistMatrix};
 pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place};

@@ -4,7 +4,7 @@
 
 use clearance::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
 use clearance::narrow_phase::{
-    Accuracy, DerivativeMethod, Derivatives, Goal, Separation, TwistMatrix, derivatives, separation,
+    Accuracy, DerivativeGoal, DerivativeMethod, Derivatives, Goal, Separation, TwistMatrix, derivatives, separation,
 };
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -47,7 +47,7 @@ fn twisted(pose: &Placement, v: Vec3, w: Vec3) -> Placement {
 
 fn measured(a: &Shape, b: &Shape, at: [&Placement; 2]) -> (Separation, Derivatives) {
     let found = separation(a, b, at[0], at[1], &goal()).unwrap();
-    let told = derivatives(a, b, at[0], at[1], &found).unwrap();
+    let told = derivatives(a, b, at[0], at[1], &found, &DerivativeGoal::default(), &goal()).unwrap();
     (found, told)
 }
 
@@ -181,7 +181,7 @@ fn smooth_pairs_agree_with_central_differences() {
             let gap = GAPS[count % GAPS.len()];
             let Some([at_a, at_b]) = placed(&mut random, &a, &b, gap) else { continue };
             let (found, derivatives) = measured(&a, &b, [&at_a, &at_b]);
-            assert_eq!(derivatives.method, DerivativeMethod::ExactSmooth);
+            assert_eq!(derivatives.method, DerivativeMethod::Exact);
             assert!(derivatives.is_valid && !derivatives.on_border, "{derivatives:?}");
             assert!(derivatives.residual < 1e-14, "{derivatives:?}");
             let scale = derivatives.conditioning.min(1.0);

@@ -1,0 +1,35 @@
+//! Derivatives of a pair, by the method that was asked for.
+
+use super::super::goal::Goal;
+use super::super::outcome::Separation;
+use super::derivatives::{DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives};
+use super::exact::exact;
+use crate::geometry::{Placement, Shape};
+
+/// The derivatives of what `found` says of two shapes in these places.
+///
+/// `found` has to be what [`separation`](crate::narrow_phase::separation) says of them, asked for a distance or, in an overlap, a
+/// penetration. Of shapes of several pieces the exact methods and those of order one are about the two pieces that it names; differences and order
+/// zero are about the whole shapes. `again` is how separations in moved places are asked, and when to stop.
+///
+/// # Errors
+/// [`NoDerivatives`].
+pub fn derivatives(
+    a: &Shape,
+    b: &Shape,
+    at_a: &Placement,
+    at_b: &Placement,
+    found: &Separation,
+    goal: &DerivativeGoal,
+    again: &Goal,
+) -> Result<Derivatives, NoDerivatives> {
+    let pair = [(a, at_a), (b, at_b)];
+    match goal.method {
+        DerivativeMethod::Exact => exact(pair, found, true),
+        DerivativeMethod::ExactCell => exact(pair, found, false),
+        DerivativeMethod::FiniteDifference
+        | DerivativeMethod::Smoothed0
+        | DerivativeMethod::Smoothed1Gaussian
+        | DerivativeMethod::Smoothed1Gumbel => Err(NoDerivatives::Stopped).inspect_err(|_| _ = again.margin),
+    }
+}
