@@ -66,6 +66,12 @@ pub struct Cost {
     pub patch_corners: u64,
     /// Corners of contact patches that were held against an edge of a face, or against the cut-off.
     pub patch_cuts: u64,
+    /// Separations that derivatives asked again, in moved places.
+    pub derivative_separations: u64,
+    /// Support points that derivatives asked one shape for.
+    pub derivative_supports: u64,
+    /// Corners that derivatives looked at.
+    pub derivative_corners: u64,
 }
 
 impl AddAssign for Cost {
@@ -78,6 +84,9 @@ impl AddAssign for Cost {
         self.escalations += other.escalations;
         self.patch_corners += other.patch_corners;
         self.patch_cuts += other.patch_cuts;
+        self.derivative_separations += other.derivative_separations;
+        self.derivative_supports += other.derivative_supports;
+        self.derivative_corners += other.derivative_corners;
     }
 }
 

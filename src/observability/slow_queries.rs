@@ -72,8 +72,15 @@ impl Observer for SlowQueries {
 
 /// What was wanted, in the words of the protocol.
 fn wants(question: &Question) -> String {
-    let Wants { distance, witness, depth, pairs, patch } = question.wants;
-    let named = [("distance", distance), ("witness", witness), ("depth", depth), ("pairs", pairs), ("patch", patch)];
+    let Wants { distance, witness, depth, pairs, patch, derivatives } = question.wants;
+    let named = [
+        ("distance", distance),
+        ("witness", witness),
+        ("depth", depth),
+        ("pairs", pairs),
+        ("patch", patch),
+        ("derivatives", derivatives),
+    ];
     let wanted = named.into_iter().filter_map(|(name, wanted)| wanted.then_some(name));
     ["verdict"].into_iter().chain(wanted).collect::<Vec<_>>().join(",")
 }

@@ -2,7 +2,7 @@
 
 use super::declared::Coverage;
 use crate::geometry::Vec3;
-use crate::narrow_phase::{Bracket, ContactPatch, Cost, Termination};
+use crate::narrow_phase::{Bracket, ContactPatch, Cost, Derivatives, Termination};
 use crate::scene::{BodyId, Effect, Epoch, Party, Revision};
 
 /// What the bracket decides.
@@ -90,6 +90,17 @@ pub struct Witness {
     pub normal_error: f64,
 }
 
+/// How a pair changes when its bodies move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairDerivatives {
+    /// With respect to twists of both sides about their own origins, in the world's axes. A link's origin is that of its frame, and a body's that a
+    /// link holds is the link's.
+    pub twists: Derivatives,
+    /// Of pairs with a side that is a robot's, in questions about its states: the gradient of the signed distance with respect to the joints'
+    /// positions, one number for each; metres per radian, or per metre. Else empty.
+    pub joints: Vec<f64>,
+}
+
 /// What is known about one pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairAnswer {
@@ -108,6 +119,8 @@ pub struct PairAnswer {
     /// Where wanted, of a pair that is not proved apart by more than its margin: where the faces of the two convex pieces
     /// touch that `a` and `b` name. None for a piece that is no single convex one, as of a mesh within a compound.
     pub patch: Option<Box<ContactPatch>>,
+    /// Where wanted, of a pair that has a witness: how it changes when its bodies move. None for a piece that is no single convex one.
+    pub derivatives: Option<Box<PairDerivatives>>,
     /// How the work on the pair stopped.
     pub termination: Termination,
 }

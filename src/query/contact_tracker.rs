@@ -115,8 +115,17 @@ impl ContactTracker {
     }
 
     fn query(&self) -> PairQuery {
-        let ContactQuestion { threshold, wants, accuracy, solver, filter, stays: _, max_patch_points, max_contacts } =
-            &self.question;
+        let ContactQuestion {
+            threshold,
+            wants,
+            accuracy,
+            solver,
+            filter,
+            stays: _,
+            max_patch_points,
+            derivatives,
+            max_contacts,
+        } = &self.question;
         let margin = match threshold {
             Threshold::Touching => 0.0,
             Threshold::Margin(margin) => *margin,
@@ -131,6 +140,7 @@ impl ContactTracker {
             filter: filter.clone(),
             max_pairs: *max_contacts,
             max_patch_points: *max_patch_points,
+            derivatives: *derivatives,
         };
         PairQuery { items: Vec::new(), mode: Mode::All, context }
     }

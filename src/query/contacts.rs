@@ -7,7 +7,7 @@ use super::answer::{PairAnswer, Refused};
 use super::declared::Coverage;
 use super::request::{Filter, Wants};
 use crate::limits::LimitExceeded;
-use crate::narrow_phase::{Accuracy, Cost, MOST_POINTS, Solver};
+use crate::narrow_phase::{Accuracy, Cost, DerivativeGoal, MOST_POINTS, Solver};
 use crate::scene::{BodyId, Epoch, Revision};
 
 /// When is a pair in contact?
@@ -25,7 +25,7 @@ pub enum Threshold {
 pub struct ContactQuestion {
     /// When a pair is in contact.
     pub threshold: Threshold,
-    /// What is computed of each pair: `distance`, `witness`, `depth` and `patch`.
+    /// What is computed of each pair: `distance`, `witness`, `depth`, `patch` and `derivatives`.
     pub wants: Wants,
     /// How narrow brackets have to be where `distance` is wanted.
     pub accuracy: Accuracy,
@@ -37,6 +37,8 @@ pub struct ContactQuestion {
     pub stays: bool,
     /// Points of a contact patch at most, from 1 to [`MOST_POINTS`](crate::narrow_phase::MOST_POINTS).
     pub max_patch_points: usize,
+    /// How derivatives are made, where they are wanted.
+    pub derivatives: DerivativeGoal,
     /// Pairs held at a time, in contact or undecided; with more of them there is no leading on.
     pub max_contacts: usize,
 }
@@ -51,6 +53,7 @@ impl Default for ContactQuestion {
             filter: Filter::default(),
             stays: false,
             max_patch_points: MOST_POINTS,
+            derivatives: DerivativeGoal::default(),
             max_contacts: 250_000,
         }
     }

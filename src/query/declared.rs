@@ -29,12 +29,13 @@ impl Coverage {
 
 /// The effects that outputs and a margin stand for. That every pair is listed is none: it is the same verdicts.
 pub(super) fn effects_of(wants: Wants, margin: f64) -> Effects {
-    let Wants { distance, witness, depth, pairs: _, patch } = wants.closed();
+    let Wants { distance, witness, depth, pairs: _, patch, derivatives } = wants.closed();
     let wanted = [
         (distance, Effect::Distance),
         (witness, Effect::Witness),
         (depth, Effect::Depth),
         (patch, Effect::Patch),
+        (derivatives, Effect::Derivatives),
         (margin > 0.0, Effect::Margin),
     ];
     let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted).map(|(_, effect)| effect);

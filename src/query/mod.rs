@@ -36,7 +36,9 @@ mod search;
 mod states;
 mod verdict;
 
-pub use answer::{Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, Refused, Side, Verdict, Witness};
+pub use answer::{
+    Answer, Indeterminacy, ItemAnswer, MotionAnswer, PairAnswer, PairDerivatives, Refused, Side, Verdict, Witness,
+};
 pub use batch::{OneByOne, Part, Prepared};
 pub use batch_question::{BatchQuestion, Output};
 pub use cast_answer::{Answers, CastHit, CastItem, CastVerdict, Grazed, NearestItem, OverlapItem, Overlapping};

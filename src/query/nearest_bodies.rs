@@ -154,6 +154,7 @@ impl<'a> Neighbours<'a> {
             signed_distance: found.signed_distance,
             witness: self.wants.witness.then_some(witness),
             patch: patch.and_then(|patch| patch(placed, found, margin, &self.request.context, cost)),
+            derivatives: None,
             termination: found.termination,
         }
     }

@@ -1,7 +1,7 @@
 //! What may be asked. Plain data: a transport decodes into these structs once, and nothing below sees bytes again.
 
 use crate::geometry::{Pose, Shape};
-use crate::narrow_phase::{Accuracy, MOST_POINTS, Solver};
+use crate::narrow_phase::{Accuracy, DerivativeGoal, MOST_POINTS, Solver};
 use crate::scene::{BodyId, Revision};
 
 /// Outputs a request wants beside the verdict, which is always given. Only what is wanted is computed.
@@ -20,19 +20,23 @@ pub struct Wants {
     /// Where the faces of pairs touch that are told and not proved apart by more than their margin; includes `witness` and
     /// `depth`.
     pub patch: bool,
+    /// How pairs that are told change when their bodies move, wherever they have a witness; includes `witness`.
+    pub derivatives: bool,
 }
 
 impl Wants {
     /// The verdict alone.
-    pub const VERDICT: Self = Self { distance: false, witness: false, depth: false, pairs: false, patch: false };
+    pub const VERDICT: Self =
+        Self { distance: false, witness: false, depth: false, pairs: false, patch: false, derivatives: false };
 
     /// Everything there is.
-    pub const ALL: Self = Self { distance: true, witness: true, depth: true, pairs: true, patch: true };
+    pub const ALL: Self =
+        Self { distance: true, witness: true, depth: true, pairs: true, patch: true, derivatives: true };
 
     /// The wants with what they include.
     #[must_use]
     pub fn closed(self) -> Self {
-        let (witness, depth) = (self.witness || self.patch, self.depth || self.patch);
+        let (witness, depth) = (self.witness || self.patch || self.derivatives, self.depth || self.patch);
         Self { distance: self.distance || witness || depth, witness, depth, ..self }
     }
 }
@@ -71,6 +75,8 @@ pub struct Context {
     pub max_pairs: usize,
     /// Points of a contact patch at most, from 1 to [`MOST_POINTS`]; a patch that has more corners says so.
     pub max_patch_points: usize,
+    /// How derivatives are made, where they are wanted. Each pair has a stream of its own, whatever is said here.
+    pub derivatives: DerivativeGoal,
 }
 
 impl Default for Context {
@@ -84,6 +90,7 @@ impl Default for Context {
             filter: Filter::default(),
             max_pairs: 100,
             max_patch_points: MOST_POINTS,
+            derivatives: DerivativeGoal::default(),
         }
     }
 }

@@ -189,6 +189,7 @@ impl<'a> Search<'a> {
                 normal_error: found.normal_error,
             }),
             patch: None,
+            derivatives: None,
             termination: found.termination,
         };
         self.bracket = union(self.bracket, found.bracket);

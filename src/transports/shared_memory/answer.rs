@@ -140,9 +140,8 @@ fn cut(text: &str) -> &str {
 }
 
 fn framed(frame: &Frame, cost: Cost) -> ResponseHeader {
-    // No batch has contact patches.
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners: _, patch_cuts: _ } =
-        cost;
+    // No batch has contact patches or derivatives.
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, .. } = cost;
     ResponseHeader {
         nonce: frame.nonce,
         question: frame.question,

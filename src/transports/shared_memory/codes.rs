@@ -125,7 +125,14 @@ pub(super) const WANTS_PATCH: u32 = 32;
 pub(super) fn wants(bits: u32) -> Option<Wants> {
     let has = |bit| bits & bit != 0;
     let known = bits < 2 * WANTS_PATCH;
-    known.then(|| Wants { distance: has(1), witness: has(2), depth: has(4), pairs: has(8), patch: has(WANTS_PATCH) })
+    known.then(|| Wants {
+        distance: has(1),
+        witness: has(2),
+        depth: has(4),
+        pairs: has(8),
+        patch: has(WANTS_PATCH),
+        derivatives: false,
+    })
 }
 
 pub(super) fn wants_bits(wants: Wants) -> u32 {

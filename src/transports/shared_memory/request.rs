@@ -256,6 +256,7 @@ impl Decoder<'_> {
             filter: self.filter()?,
             max_pairs: if self.has(flag::MAX_PAIRS) { max_pairs } else { defaults.max_pairs },
             max_patch_points: defaults.max_patch_points,
+            derivatives: defaults.derivatives,
         })
     }
 

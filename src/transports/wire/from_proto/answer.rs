@@ -68,6 +68,7 @@ pub(super) fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
         signed_distance: pair.signed_distance,
         witness: pair.witness.as_ref().map(witness).transpose()?,
         patch: pair.patch.as_ref().map(patch).transpose()?.map(Box::new),
+        derivatives: None,
         termination: termination(pair.termination)?,
     })
 }
@@ -146,5 +147,15 @@ fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
 pub(super) fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
     let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
         cost.ok_or(NotAnAnswer("cost"))?;
-    Ok(Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts })
+    Ok(Cost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        ..Cost::default()
+    })
 }

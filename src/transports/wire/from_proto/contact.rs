@@ -39,7 +39,7 @@ pub fn contact_question(
         Ok(v1::ContactThreshold::Margin) => Threshold::Margin(asked.margin),
         Err(_) => return Err(unknown_value(&Path::root("threshold"), request.threshold)),
     };
-    let Context { wants, accuracy, solver, filter, max_patch_points, margin: _, cut_off: _, max_pairs: _ } =
+    let Context { wants, accuracy, solver, filter, max_patch_points, derivatives, margin: _, cut_off: _, max_pairs: _ } =
         context(request.context.as_ref(), snapshot)?;
     Ok(ContactQuestion {
         threshold,
@@ -49,6 +49,7 @@ pub fn contact_question(
         filter,
         stays: request.stays,
         max_patch_points,
+        derivatives,
         max_contacts: limits.max_contacts,
     })
 }

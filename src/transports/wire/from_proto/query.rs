@@ -163,12 +163,13 @@ pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Res
         filter: filter(&path.field("filter"), context.filter.as_ref(), snapshot)?,
         max_pairs: context.max_pairs.map_or(defaults.max_pairs, |pairs| pairs as usize),
         max_patch_points: context.max_patch_points.map_or(defaults.max_patch_points, |points| points as usize),
+        derivatives: defaults.derivatives,
     })
 }
 
 fn wants(wants: &v1::Wants) -> Wants {
     let v1::Wants { distance, witness, depth, pairs, patch } = *wants;
-    Wants { distance, witness, depth, pairs, patch }
+    Wants { distance, witness, depth, pairs, patch, derivatives: false }
 }
 
 fn solver(number: i32) -> Result<Solver, ServiceError> {

@@ -187,6 +187,7 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
 }
 
 pub(super) fn cost(cost: Cost) -> v1::Cost {
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } = cost;
+    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts, .. } =
+        cost;
     v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
 }

@@ -44,7 +44,7 @@ pub(super) fn doubles(numbers: &[f64]) -> v1::Doubles {
 }
 
 pub(super) fn context(target: &Target, context: &Context) -> v1::Context {
-    let Wants { distance, witness, depth, pairs, patch } = context.wants;
+    let Wants { distance, witness, depth, pairs, patch, derivatives: _ } = context.wants;
     let (absolute, relative) = (context.accuracy.absolute, context.accuracy.relative);
     v1::Context {
         scene: target.scene.clone(),
