@@ -54,7 +54,7 @@ fn scene() -> Scene {
 
 /// What is wanted for an effect, with what it needs; none for those that are questions of their own.
 fn wants(effect: Effect) -> Option<(Wants, f64)> {
-    let wants = |distance, witness, depth, patch| Wants { distance, witness, depth, patch, pairs: false };
+    let wants = |distance, witness, depth, patch| Wants { distance, witness, depth, patch, ..Wants::VERDICT };
     match effect {
         Effect::Verdict => Some((Wants::VERDICT, 0.0)),
         Effect::Margin => Some((Wants::VERDICT, MARGIN)),
