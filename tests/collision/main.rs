@@ -4,7 +4,9 @@
 mod batches;
 mod caches;
 mod closed_forms;
-#[cfg(feature = "effect-patch")]
+#[cfg(feature = "effect-derivatives")]
+mod contested;
+#[cfg(feature = "effect-derivatives")]
 mod derivatives;
 mod early_outs;
 mod extremes;
