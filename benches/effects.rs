@@ -9,7 +9,8 @@ use std::time::Instant;
 
 use clearance::geometry::{ConvexHull, Pose, Quaternion, RigidMotion, Shape, Vec3};
 use clearance::narrow_phase::{
-    Cost, Depth, DerivativeGoal, Goal, ImpactGoal, PatchGoal, Separation, contact_patch, derivatives, impact, separation,
+    Cost, Depth, DerivativeGoal, Goal, ImpactGoal, PatchGoal, Separation, contact_patch, derivatives, impact,
+    separation,
 };
 use clearance::query::{
     CastMode, CastShapes, Casts, ContactQuestion, ContactTracker, Context, DEFAULT_RESOLUTION, ItemBatch, Mode, Moved,
@@ -168,9 +169,8 @@ fn main() {
     let touching = pairs.iter().filter(|pair| measured(**pair, &Goal::verdict()).bracket.upper <= 0.0).count();
     let mut tracker = ContactTracker::new(ContactQuestion::default());
     tracker.advance(&snapshot, &|| false).expect("a valid question");
-    let mut rows: Vec<Row> = (Effect::EACH.into_iter())
-        .map(|effect| Row { effect, pair: Vec::new(), question: Vec::new() })
-        .collect();
+    let mut rows: Vec<Row> =
+        (Effect::EACH.into_iter()).map(|effect| Row { effect, pair: Vec::new(), question: Vec::new() }).collect();
     for round in 0..ROUNDS {
         for row in &mut rows {
             let effect = row.effect;

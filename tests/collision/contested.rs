@@ -74,7 +74,8 @@ fn convex_pairs_are_never_contested() {
 #[test]
 fn a_common_edge_does_not_contest_and_a_valley_does() {
     let roof = |z: f64| {
-        let corners = [[-1.0, -1.0, z], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, z], [-1.0, 1.0, z], [1.0, 1.0, z]];
+        let corners =
+            [[-1.0, -1.0, z], [0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1.0, -1.0, z], [-1.0, 1.0, z], [1.0, 1.0, z]];
         surface(&corners, &[[0, 1, 2], [0, 2, 4], [1, 3, 2], [3, 5, 2]])
     };
     for (above, ridge) in [(ball(0.2), true), (Shape::ellipsoid(Vec3::new(0.2, 0.1, 0.2)).unwrap(), false)] {
@@ -94,9 +95,8 @@ fn a_common_edge_does_not_contest_and_a_valley_does() {
 fn a_saddle_contests() {
     let n = 20_u32;
     let at = |i: u32| f64::from(i) / f64::from(n) * 2.0 - 1.0;
-    let vertices: Vec<[f64; 3]> = (0..=n)
-        .flat_map(|i| (0..=n).map(move |j| [at(i), at(j), at(i) * at(i) - at(j) * at(j)]))
-        .collect();
+    let vertices: Vec<[f64; 3]> =
+        (0..=n).flat_map(|i| (0..=n).map(move |j| [at(i), at(j), at(i) * at(i) - at(j) * at(j)])).collect();
     let corner = |i: u32, j: u32| i * (n + 1) + j;
     let triangles: Vec<[u32; 3]> = (0..n)
         .flat_map(|i| (0..n).map(move |j| [corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)]))
