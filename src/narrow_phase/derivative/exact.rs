@@ -5,7 +5,7 @@ use super::super::patch::{NoPatch, TouchingPiece, across, is_wall};
 use super::derivatives::{DerivativeCost, DerivativeMethod, Derivatives, NoDerivatives, TwistMatrix};
 use super::polish::{Polished, polish};
 use super::response::{Change, Response};
-use super::side::{Mat2, Side};
+use super::side::{Mat2, Side, tilt};
 use crate::geometry::{Placement, Shape, Vec3};
 
 /// By formula: from the features that face each other, and with `may_polish`, of smooth pairs, at a normal that is made more exact first.
@@ -25,9 +25,10 @@ pub(super) fn exact(
         signed_distance: found.signed_distance,
         residual: found.point_error,
     };
+    let tilt = tilt(found.normal_error);
     let sides = |normal: Vec3| {
         let [x, y] = across(normal);
-        [Side::of(&piece_a, [x, y, normal]), Side::of(&piece_b, [x, y, -normal])]
+        [Side::of(&piece_a, [x, y, normal], tilt), Side::of(&piece_b, [x, y, -normal], tilt)]
     };
     let first = sides(found.normal);
     let is_smooth = first.iter().all(|side| side.is_smooth);
