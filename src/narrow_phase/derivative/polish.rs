@@ -7,8 +7,8 @@
 use super::super::patch::{TouchingPiece, across};
 use super::super::support::support;
 use super::side::{Mat2, Vec2};
+use crate::geometry::Vec3;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
-use crate::geometry::{Core, Vec3};
 
 /// Steps at most: what a separation leaves is small, and digits double.
 const MAX_STEPS: usize = 8;
@@ -65,9 +65,6 @@ pub(super) fn polish(
 
 /// The support point in a direction, swept radius included, from the piece's witness.
 fn point(piece: &TouchingPiece, direction: Vec3) -> Vec3 {
-    let on_core = match &*piece.core {
-        Core::Point => Vec3::zeros(),
-        core => support(core, piece.rotation.tr_mul(&direction)),
-    };
+    let on_core = support(&piece.core, piece.rotation.tr_mul(&direction));
     piece.position + piece.rotation * on_core + direction * piece.swept_radius
 }

@@ -65,12 +65,12 @@ fn quantities([a, b]: [Smooth; 2], at: [&Placement; 2], near: Vec3) -> Quantitie
         let determinant = c[0] * d[1] - c[1] * d[0];
         let (u, v) = ((-e * d[1] + f * d[0]) / determinant, (-c[0] * f + c[1] * e) / determinant);
         n = (n + x * u + y * v).normalize();
-        if u.hypot(v) < 1e-16 {
+        if libm::hypot(u, v) < 1e-16 {
             break;
         }
     }
     let [e, f] = off(n, across(n));
-    assert!(e.hypot(f) < 1e-14, "{e:e} {f:e}");
+    assert!(libm::hypot(e, f) < 1e-14, "{e:e} {f:e}");
     let [p, q] = ends(n);
     [n.dot(&(q - p)), n.x, n.y, n.z, p.x, p.y, p.z, q.x, q.y, q.z]
 }
