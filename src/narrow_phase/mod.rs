@@ -77,9 +77,9 @@ mod wall;
 mod witness;
 
 pub use batch::{PairQuestion, separations};
-#[cfg(feature = "effect-derivatives")]
-pub use derivative::derivatives;
 pub use derivative::{DerivativeCost, DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives, TwistMatrix};
+#[cfg(feature = "effect-derivatives")]
+pub use derivative::{EpsilonSchedule, derivatives};
 pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place};

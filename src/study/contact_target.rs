@@ -16,7 +16,7 @@ use super::families::placed;
 use super::random::Random;
 use crate::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
 use crate::narrow_phase::{
-    DerivativeGoal, DerivativeMethod, Derivatives, Goal, Separation, derivatives, separation,
+    DerivativeGoal, DerivativeMethod, Derivatives, EpsilonSchedule, Goal, Separation, derivatives, separation,
 };
 
 /// Damping at the start, and beyond which no step is left that helps; parts of the largest diagonal entry.

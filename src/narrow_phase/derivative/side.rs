@@ -42,8 +42,6 @@ pub(super) struct Side {
     pub radii: Mat2,
     /// Whether the witness is where two features meet, so that a move may lead to either.
     pub on_border: bool,
-    /// Smooth and strictly convex, so that no move leaves the feature.
-    pub is_smooth: bool,
 }
 
 impl Side {
@@ -52,7 +50,7 @@ impl Side {
     pub fn of(piece: &TouchingPiece, axes: [Vec3; 3], tilt: f64) -> Self {
         let swept = Mat2::identity() * piece.swept_radius;
         if is_wall(&piece.core) {
-            return Self { flat: whole_plane(), radii: Mat2::zeros(), on_border: false, is_smooth: false };
+            return Self { flat: whole_plane(), radii: Mat2::zeros(), on_border: false };
         }
         let in_core = axes.map(|axis| piece.rotation.tr_mul(&axis));
         // From the core's origin to the witness on the core itself, in its axes.
@@ -61,10 +59,10 @@ impl Side {
             && radii.min() > 0.0
         {
             let radii = ellipsoid(radii, in_core) + swept;
-            return Self { flat: ArrayVec::new(), radii, on_border: false, is_smooth: true };
+            return Self { flat: ArrayVec::new(), radii, on_border: false };
         }
         if matches!(*piece.core, Core::Point) {
-            return Self { flat: ArrayVec::new(), radii: swept, on_border: false, is_smooth: true };
+            return Self { flat: ArrayVec::new(), radii: swept, on_border: false };
         }
         let extent = length(piece.position) + piece.swept_radius;
         let slack = SLACK_ULPS * UNIT_ROUNDOFF * extent;
@@ -74,7 +72,7 @@ impl Side {
         let round = round(&piece.core, in_core, at, flat.len());
         let radii = without(round + swept, &flat);
         let on_border = !face.complete || is_at_end(&face, flat.len(), slack);
-        Self { flat, radii, on_border, is_smooth: false }
+        Self { flat, radii, on_border }
     }
 }
 
