@@ -31,13 +31,16 @@ pub(super) const REACHED: f64 = 1e-3;
 
 /// Two bodies, and where they should touch.
 #[derive(Clone, Debug)]
-pub(super) struct ContactTarget {
+pub struct ContactTarget {
+    /// The one that stays.
     pub a: Shape,
+    /// The one that is moved.
     pub b: Shape,
+    /// Where A is.
     pub at_a: Placement,
-    /// In the world.
+    /// Where the nearest point of A should be, in the world; metres.
     pub on_a: Vec3,
-    /// In B's frame.
+    /// Where that of B should be, in B's frame; metres.
     pub on_b: Vec3,
     /// Of the smaller body, metres.
     pub size: f64,
@@ -45,18 +48,21 @@ pub(super) struct ContactTarget {
 
 /// How an attempt is made.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Attempt {
+pub struct Attempt {
+    /// How derivatives are made.
     pub method: DerivativeMethod,
     /// Pairs of samples of random methods.
     pub samples: u32,
     /// Separations at most, those that derivatives ask again among them.
     pub budget: u64,
+    /// Of random methods.
     pub seed: u64,
 }
 
 /// How an attempt ended.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
+pub struct Course {
+    /// Every residual is below a thousandth of the size.
     pub reached: bool,
     /// Steps that were taken.
     pub steps: u64,
@@ -75,10 +81,9 @@ struct State {
 }
 
 impl ContactTarget {
-    /// A target that can be reached: the witness of a random place in which the bodies touch in one point. None where the approach passes by.
-    pub fn random([a, b]: [Shape; 2], size: f64, random: &mut Random) -> Option<Self> {
-        let at_a = placed(Vec3::zeros(), random.rotation())?;
-        let mut at_b = placed(random.direction() * (4.0 * size), random.rotation())?;
+    /// A target that can be reached: the witness where B, on its way from `at_b` towards A, touches it. None where that is no single point.
+    #[must_use]
+    pub fn of_an_approach([a, b]: [Shape; 2], size: f64, at_a: Placement, mut at_b: Placement) -> Option<Self> {
         for _ in 0..60 {
             let found = separation(&a, &b, &at_a, &at_b, &Goal::penetration()).ok()?;
             if found.signed_distance.abs() < 1e-9 * size {
@@ -93,8 +98,15 @@ impl ContactTarget {
         None
     }
 
+    /// The same for an approach at random.
+    pub(super) fn random(shapes: [Shape; 2], size: f64, random: &mut Random) -> Option<Self> {
+        let at_a = placed(Vec3::zeros(), random.rotation())?;
+        let at_b = placed(random.direction() * (4.0 * size), random.rotation())?;
+        Self::of_an_approach(shapes, size, at_a, at_b)
+    }
+
     /// A place to start from, apart from A.
-    pub fn start(&self, random: &mut Random) -> Option<Pose> {
+    pub(super) fn start(&self, random: &mut Random) -> Option<Pose> {
         Pose::new(self.at_a.translation + random.direction() * (3.0 * self.size), random.rotation()).ok()
     }
 
@@ -107,7 +119,9 @@ impl ContactTarget {
         Some(State { pose, at_b, found, residuals: SVector::from_fn(|row, _| of[row / 3][row % 3]) })
     }
 
-    /// Follows derivatives from `start` until the target is reached, no step helps any more, or the budget is used up.
+    /// Follows derivatives from `start` until the target is reached, no step helps any more, or the budget is used up. None of shapes that have no
+    /// separation.
+    #[must_use]
     pub fn reach(&self, start: Pose, attempt: &Attempt) -> Option<Course> {
         let mut schedule = EpsilonSchedule::default();
         let mut state = self.state(start)?;

@@ -42,6 +42,8 @@ mod sweep;
 mod table;
 mod truth;
 
+#[cfg(feature = "effect-derivatives")]
+pub use contact_target::{Attempt, ContactTarget, Course};
 pub use planner::{Planner, PlannerScene};
 pub use section::{Figure, Section};
 pub use study::{Effort, NoStudy, Progress, Study};
