@@ -71,7 +71,7 @@ fn radii(sides: &[Side; 2]) -> Mat2 {
 }
 
 impl Derivatives {
-    fn set(&mut self, body: usize, column: usize, change: &Change) {
+    pub(super) fn set(&mut self, body: usize, column: usize, change: &Change) {
         self.signed_distance[body][column] = change.distance;
         self.normal[body].set_column(column, &change.normal);
         self.point_on_a[body].set_column(column, &change.points[0]);
