@@ -23,7 +23,9 @@ pub(super) fn exact(
     if let Some(at) = smooth {
         let response = Response::smooth(at.normal, at.axes, at.signed_distance, at.radii);
         let arms = [arms[0] + at.points[0], arms[1] + at.points[1] - between];
-        return Ok(response.derivatives(arms, DerivativeMethod::Exact, at.residual));
+        let mut told = Derivatives { residual: at.residual, ..Derivatives::unknown(DerivativeMethod::Exact) };
+        response.tell(arms, &mut told);
+        return Ok(told);
     }
     if is_wall(&piece_a.core) && is_wall(&piece_b.core) {
         return Err(NoPatch::Unbounded { a: a.kind(), b: b.kind() }.into());
@@ -32,7 +34,8 @@ pub(super) fn exact(
     let [x, y] = axes;
     let sides = [Side::of(&piece_a, [x, y, normal], tilt), Side::of(&piece_b, [x, y, -normal], tilt)];
     let response = Response::new(normal, axes, found.signed_distance, [&sides[0], &sides[1]]);
-    let mut told = response.derivatives(arms, DerivativeMethod::ExactCell, found.point_error);
+    let mut told = Derivatives { residual: found.point_error, ..Derivatives::unknown(DerivativeMethod::ExactCell) };
+    response.tell(arms, &mut told);
     told.on_border = response.is_shared || sides.iter().any(|side| side.on_border);
     Ok(told)
 }

@@ -24,7 +24,7 @@
 use arrayvec::ArrayVec;
 use nalgebra::SMatrix;
 
-use super::derivatives::{DerivativeCost, DerivativeMethod, Derivatives, TwistMatrix};
+use super::derivatives::{Derivatives, TwistMatrix};
 use super::side::{Mat2, Side, Vec2};
 use crate::geometry::Vec3;
 
@@ -111,34 +111,14 @@ impl Response {
         Self { inverse, flat: Some(Flat { bend, turn, slide }), least_eigenvalue, is_shared, ..smooth }
     }
 
-    /// What follows for all twists. `arms`: from the origin of each body to its witness. Not on a border, as far as is known here.
+    /// Writes what follows for all twists, and how well it is conditioned. `arms`: from the origin of each body to its witness.
     #[inline]
-    pub fn derivatives(&self, arms: [Vec3; 2], method: DerivativeMethod, residual: f64) -> Derivatives {
-        let mut all = Derivatives {
-            signed_distance: [[0.0; 6]; 2],
-            normal: [TwistMatrix::zeros(); 2],
-            point_on_a: [TwistMatrix::zeros(); 2],
-            point_on_b: [TwistMatrix::zeros(); 2],
-            method,
-            conditioning: self.least_eigenvalue,
-            residual,
-            epsilon: 0.0,
-            samples: 0,
-            seed: 0,
-            is_valid: !self.is_shared && self.least_eigenvalue > 0.0,
-            on_border: false,
-            is_contested: false,
-            cost: DerivativeCost::default(),
-        };
-        self.fill(arms, &mut all);
-        all
-    }
-
-    /// Writes all derivatives.
-    pub fn fill(&self, arms: [Vec3; 2], all: &mut Derivatives) {
+    pub fn tell(&self, arms: [Vec3; 2], all: &mut Derivatives) {
         for (body, arm) in arms.into_iter().enumerate() {
             self.fill_body(body, arm, all);
         }
+        all.conditioning = self.least_eigenvalue;
+        all.is_valid = !self.is_shared && self.least_eigenvalue > 0.0;
     }
 
     /// Those with respect to one body's twists about its origin.
