@@ -7,7 +7,11 @@ mod closed_forms;
 #[cfg(feature = "effect-derivatives")]
 mod contested;
 #[cfg(feature = "effect-derivatives")]
+mod derivative_pairs;
+#[cfg(feature = "effect-derivatives")]
 mod derivatives;
+#[cfg(feature = "effect-derivatives")]
+mod differences;
 mod early_outs;
 mod extremes;
 mod fits;
@@ -26,6 +30,10 @@ mod patches;
 mod random_pairs;
 mod rays;
 mod samples;
+#[cfg(feature = "effect-derivatives")]
+mod smoothed_places;
+#[cfg(feature = "effect-derivatives")]
+mod smoothed_supports;
 mod solvers;
 mod soundness;
 mod specimen;
