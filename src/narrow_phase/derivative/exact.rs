@@ -2,7 +2,7 @@
 
 use super::super::outcome::Separation;
 use super::super::patch::{NoPatch, TouchingPiece, across, is_wall};
-use super::derivatives::{DerivativeMethod, Derivatives, NoDerivatives};
+use super::derivatives::{DerivativeCost, DerivativeMethod, Derivatives, NoDerivatives};
 use super::response::Response;
 use super::side::{Side, tilt};
 use super::smooth_pair::polished;
@@ -32,9 +32,12 @@ pub(super) fn exact(
     }
     let (axes, tilt) = (across(normal), tilt(found.normal_error));
     let [x, y] = axes;
-    let sides = [Side::of(&piece_a, [x, y, normal], tilt), Side::of(&piece_b, [x, y, -normal], tilt)];
+    let mut cost = DerivativeCost::default();
+    let mut side = |piece: &TouchingPiece, up| Side::of(piece, [x, y, up], tilt, &mut cost);
+    let sides = [side(&piece_a, normal), side(&piece_b, -normal)];
     let response = Response::new(normal, axes, found.signed_distance, [&sides[0], &sides[1]]);
-    let mut told = Derivatives { residual: found.point_error, ..Derivatives::unknown(DerivativeMethod::ExactCell) };
+    let unknown = Derivatives::unknown(DerivativeMethod::ExactCell);
+    let mut told = Derivatives { residual: found.point_error, cost, ..unknown };
     response.tell(arms, &mut told);
     told.on_border = response.is_shared || sides.iter().any(|side| side.on_border);
     Ok(told)
