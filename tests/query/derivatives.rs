@@ -546,6 +546,11 @@ const METHODS: [DerivativeMethod; 6] = [
     DerivativeMethod::Smoothed1Gumbel,
 ];
 
+/// Every number of an answer, told apart to the last bit. What differences do not know is not a number, and equal to nothing.
+fn in_full(of: &impl std::fmt::Debug) -> String {
+    format!("{of:?}")
+}
+
 /// Whatever the threads, and whichever items are asked in one batch before.
 #[test]
 fn parts_of_a_batch_have_the_derivatives_of_the_whole() {
@@ -559,14 +564,15 @@ fn parts_of_a_batch_have_the_derivatives_of_the_whole() {
         for width in [7, 20] {
             let parts = (0..prepared.len()).step_by(width);
             let parts = parts.map(|first| prepared.run(first..(first + width).min(prepared.len()), &|| false));
-            assert_eq!(prepared.join(parts.collect::<Vec<_>>()), whole);
+            let joined = prepared.join(parts.collect::<Vec<_>>());
+            assert!(in_full(&joined) == in_full(&whole), "{method:?}");
         }
         // A pair has the same derivatives as the nearest and in the list, whether that is wanted or not.
         let listing = Wants { pairs: true, ..DERIVATIVES };
         let query = PairQuery { items: items.clone(), mode: Mode::All, context: by(method, listing) };
         let listed = Prepared::distance(snapshot, &query).unwrap().answer(&|| false);
         for (with_list, without) in listed.items.iter().zip(&whole.items) {
-            assert_eq!(with_list.nearest, without.nearest);
+            assert_eq!(in_full(&with_list.nearest), in_full(&without.nearest));
         }
     }
 }
@@ -587,8 +593,9 @@ fn samples_are_a_pairs_own_in_each_item_and_come_again() {
         let is_random = matches!(method, DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian);
         let items = ask(method);
         let [first, second] = [&items[0], &items[1]].map(|one| twists(&one.nearest));
-        assert_eq!(first.seed != 0, first != second, "{method:?}");
-        assert!(first != second || !is_random, "{method:?}");
-        assert_eq!(ask(method), items);
+        // With Gumbel noise sides without corners are sampled, too; the answer says so.
+        assert!(first.samples > 0 || !is_random, "{method:?}");
+        assert_eq!(in_full(&first) != in_full(&second), first.samples > 0, "{method:?}");
+        assert_eq!(in_full(&ask(method)), in_full(&items));
     }
 }
