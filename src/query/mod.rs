@@ -12,6 +12,7 @@ mod contact_tracker;
 mod contacts;
 mod context;
 mod declared;
+mod derivatives;
 mod item_batch;
 mod mesh_card;
 mod met;
@@ -27,12 +28,15 @@ mod no_motions;
 mod opponents;
 mod overlap;
 mod overlay;
+#[cfg(feature = "effect-derivatives")]
+mod pair_derivatives;
 mod pairs;
 mod patch;
 mod rays;
 mod request;
 mod robot_parts;
 mod search;
+mod stage;
 mod states;
 mod verdict;
 

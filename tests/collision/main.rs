@@ -5,8 +5,10 @@ mod batches;
 mod caches;
 mod closed_forms;
 #[cfg(feature = "effect-derivatives")]
+mod contested;
+#[cfg(feature = "effect-derivatives")]
 mod derivative_pairs;
-#[cfg(feature = "effect-patch")]
+#[cfg(feature = "effect-derivatives")]
 mod derivatives;
 #[cfg(feature = "effect-derivatives")]
 mod differences;

@@ -5,6 +5,7 @@ use super::super::outcome::Separation;
 use super::derivatives::{DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives};
 use super::differences::differences;
 use super::exact::exact;
+use super::runner_up::is_contested;
 use super::smoothed_places::smoothed_places;
 use super::smoothed_supports::smoothed_supports;
 use crate::geometry::{Placement, Shape};
@@ -28,7 +29,7 @@ pub fn derivatives(
 ) -> Result<Derivatives, NoDerivatives> {
     goal.check()?;
     let pair = [(a, at_a), (b, at_b)];
-    match goal.method {
+    let mut made = match goal.method {
         DerivativeMethod::Exact => exact(pair, found, true),
         DerivativeMethod::ExactCell => exact(pair, found, false),
         DerivativeMethod::FiniteDifference => differences(pair, found, again),
@@ -36,5 +37,7 @@ pub fn derivatives(
         DerivativeMethod::Smoothed1Gaussian | DerivativeMethod::Smoothed1Gumbel => {
             smoothed_supports(pair, found, goal, again)
         }
-    }
+    }?;
+    made.is_contested = is_contested(pair, found, again, &mut made.cost)?;
+    Ok(made)
 }

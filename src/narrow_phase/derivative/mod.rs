@@ -5,7 +5,7 @@
 //! change of the normal and the points, `smooth_pair` makes the normal of smooth pairs as exact as rounding lets it be. `differences` and
 //! `smoothed_places` (order zero) ask a `moved_pair` again. `smoothed_supports` (order one) puts sides of `smoothed_hessian` into the same
 //! `response`: by sampling, or by the `softmax` of corners. Random numbers are those of `counter_random`, summed up in `moments`;
-//! `adaptive_epsilon` says how far smoothing reaches.
+//! `adaptive_epsilon` says how far smoothing reaches. `runner_up` looks for another pair of pieces that is as near.
 
 #[cfg(feature = "effect-derivatives")]
 mod adaptive_epsilon;
@@ -24,6 +24,8 @@ mod moments;
 mod moved_pair;
 #[cfg(feature = "effect-derivatives")]
 mod response;
+#[cfg(feature = "effect-derivatives")]
+mod runner_up;
 #[cfg(feature = "effect-derivatives")]
 mod side;
 #[cfg(feature = "effect-derivatives")]
