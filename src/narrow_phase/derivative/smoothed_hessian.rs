@@ -57,7 +57,7 @@ impl Smoothing<'_> {
     ) -> Result<SmoothedSide, NoDerivatives> {
         let known = |side| Ok(SmoothedSide { side, error: 0.0, is_sampled: false });
         if is_wall(&piece.core) {
-            return known(Side::of(piece, axes)); // Flat everywhere, also in the mean.
+            return known(Side::of(piece, axes, 0.0)); // Flat everywhere, also in the mean.
         }
         let swept = Mat2::identity() * piece.swept_radius;
         if matches!(*piece.core, Core::Point) {
@@ -75,9 +75,8 @@ impl Smoothing<'_> {
                     is_sampled: false,
                 });
             }
-            let own = Side::of(piece, axes);
-            if own.is_smooth {
-                return known(own);
+            if matches!(*piece.core, Core::Ellipsoid { radii } if radii.min() > 0.0) {
+                return known(Side::of(piece, axes, 0.0));
             }
         }
         let (hessian, error) = self.sampled(&piece.core, &in_core, number)?;
@@ -110,5 +109,5 @@ impl Smoothing<'_> {
 
 /// Nothing flat, and no border: the mean over both sides of one is what is asked for.
 fn bent(radii: Mat2) -> Side {
-    Side { flat: ArrayVec::new(), radii, on_border: false, is_smooth: false }
+    Side { flat: ArrayVec::new(), radii, on_border: false }
 }

@@ -17,7 +17,6 @@ use super::derivatives::{DerivativeGoal, Derivatives, NoDerivatives};
 use super::moved_pair::{Pair, core_radius, size};
 use super::response::Response;
 use super::smoothed_hessian::Smoothing;
-use crate::geometry::Vec3;
 
 /// Smoothing of order one, with the noise that the goal's method names.
 pub(super) fn smoothed_supports(
@@ -47,13 +46,7 @@ pub(super) fn smoothed_supports(
     let other = smoothing.side(&piece_b, [x, y, -found.normal], 1, &mut all.cost)?;
     let response = Response::new(found.normal, [x, y], found.signed_distance, [&one.side, &other.side]);
     let arms = [found.point_on_a - at_a.translation, found.point_on_b - at_b.translation];
-    for body in 0..2 {
-        for column in 0..6 {
-            let axis = Vec3::ith(column % 3, 1.0);
-            let (v, w) = if column < 3 { (axis, Vec3::zeros()) } else { (Vec3::zeros(), axis) };
-            all.set(body, column, &response.change(body, v, w, arms[body]));
-        }
-    }
+    response.fill(arms, &mut all);
     all.conditioning = response.least_eigenvalue;
     all.residual = one.error + other.error;
     all.epsilon = smoothing.epsilon;
