@@ -6,7 +6,7 @@ mod caches;
 mod closed_forms;
 #[cfg(feature = "effect-derivatives")]
 mod derivative_pairs;
-#[cfg(feature = "effect-patch")]
+#[cfg(feature = "effect-derivatives")]
 mod derivatives;
 #[cfg(feature = "effect-derivatives")]
 mod differences;
@@ -24,6 +24,7 @@ mod oracle;
 mod pair_bytes;
 #[cfg(feature = "effect-patch")]
 mod patch_regimes;
+#[cfg(feature = "effect-patch")]
 mod patches;
 mod random_pairs;
 mod rays;

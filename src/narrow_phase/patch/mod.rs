@@ -8,10 +8,22 @@
 mod clipping;
 mod contact_patch;
 #[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
+#[cfg_attr(
+    not(feature = "effect-patch"),
+    allow(dead_code, reason = "derivatives need a face, and not how faces are cut")
+)]
 mod face;
 #[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
+#[cfg_attr(
+    not(feature = "effect-patch"),
+    allow(dead_code, reason = "derivatives need a face, and not how faces are cut")
+)]
 mod face_height;
 #[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
+#[cfg_attr(
+    not(feature = "effect-patch"),
+    allow(dead_code, reason = "derivatives need a face, and not how faces are cut")
+)]
 mod flat_region;
 #[cfg(feature = "effect-patch")]
 mod reduction;
