@@ -154,11 +154,6 @@ impl Placed {
     pub fn by(&self, method: DerivativeMethod) -> Derivatives {
         self.derivatives(&DerivativeGoal { method, ..DerivativeGoal::default() })
     }
-
-    pub fn swapped(&self) -> Self {
-        let ([a, b], [at_a, at_b]) = (self.shapes.clone(), self.at);
-        Self { shapes: [b, a], at: [at_b, at_a] }
-    }
 }
 
 /// Its translation was computed.
