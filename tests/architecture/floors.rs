@@ -104,7 +104,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("iceoryx2", &["transports"]),
     ("indicatif", &["cli"]),
     ("libm", &[GEOMETRY, "limits", "narrow_phase", "broad_phase", "robot", "scene", "query", "study"]),
-    ("nalgebra", KERNEL),
+    ("nalgebra", &[GEOMETRY, "limits", "narrow_phase", "broad_phase", "robot", "scene", "query", "study"]),
     ("opentelemetry", &["observability"]),
     ("opentelemetry-otlp", &["observability"]),
     ("opentelemetry_sdk", &["observability"]),
