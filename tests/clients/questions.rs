@@ -127,7 +127,10 @@ fn scene(model: &str) -> Vec<Call> {
 }
 
 fn wanting(distance: bool, witness: bool, depth: bool, pairs: bool) -> v1::Context {
-    v1::Context { wants: Some(v1::Wants { distance, witness, depth, pairs, patch: false }), ..context() }
+    v1::Context {
+        wants: Some(v1::Wants { distance, witness, depth, pairs, patch: false, derivatives: false }),
+        ..context()
+    }
 }
 
 fn in_bulk(context: v1::Context) -> v1::Context {

@@ -74,7 +74,7 @@ fn output(index: usize, number: i32) -> Result<Output, ServiceError> {
 
 fn known_output(output: v1::Output) -> Option<Output> {
     match output {
-        v1::Output::Unspecified => None,
+        v1::Output::Unspecified | v1::Output::Derivatives => None,
         v1::Output::Verdict => Some(Output::Verdict),
         v1::Output::Pairs => Some(Output::Pairs),
         v1::Output::Distance => Some(Output::Distance),
@@ -144,7 +144,16 @@ fn verdict_counts(counts: &v1::VerdictCounts) -> Verdicts {
 }
 
 fn mean_cost(cost: &v1::MeanCost) -> MeanCost {
-    let v1::MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
-        *cost;
+    let v1::MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        ..
+    } = *cost;
     MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
 }

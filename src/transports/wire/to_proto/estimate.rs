@@ -78,7 +78,17 @@ fn verdict_counts(verdicts: Verdicts) -> v1::VerdictCounts {
 fn mean_cost(cost: MeanCost) -> v1::MeanCost {
     let MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
         cost;
-    v1::MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
+    v1::MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        ..v1::MeanCost::default()
+    }
 }
 
 /// What would this question cost?
