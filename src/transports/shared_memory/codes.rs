@@ -210,6 +210,6 @@ mod tests {
     #[test]
     fn wants_are_bits_and_unknown_bits_are_refused() {
         assert_eq!(wants(wants_bits(Wants::ALL)), Some(Wants::ALL));
-        assert_eq!((wants(WANTS_SIDES), wants(64)), (Some(Wants::VERDICT), None));
+        assert_eq!((wants(WANTS_SIDES), wants(128)), (Some(Wants::VERDICT), None));
     }
 }
