@@ -66,7 +66,7 @@ pub struct Cost {
     pub patch_corners: u64,
     /// Corners of contact patches that were held against an edge of a face, or against the cut-off.
     pub patch_cuts: u64,
-    /// Separations that derivatives asked again, in moved places.
+    /// Separations that derivatives asked again, in moved places and of other pieces.
     pub derivative_separations: u64,
     /// Support points that derivatives asked one shape for.
     pub derivative_supports: u64,

@@ -61,7 +61,7 @@ fn along<'a, T: Tree<'a>>(a: Side<'a, T>, wall: Unbounded, goal: &Goal) -> Optio
 }
 
 /// Heights of boxes over a wall.
-struct Heights {
+pub(super) struct Heights {
     /// In the piece's frame.
     up: Vec3,
     /// Of the piece's origin, metres.
@@ -72,7 +72,7 @@ struct Heights {
 }
 
 impl Heights {
-    fn new(a: &Piece, wall: &Unbounded) -> Self {
+    pub fn new(a: &Piece, wall: &Unbounded) -> Self {
         let (normal, offset) = wall.upright();
         let wall_in_a = Placement::relative(&a.at, wall.at);
         let up = wall_in_a.direction(normal);
@@ -85,7 +85,7 @@ impl Heights {
 
     /// Lower bounds of the signed distance of what is in two boxes: their lowest corners, or, where a plane passes between lowest
     /// and highest, the lesser part that sticks through it.
-    fn lower_bounds(&self, boxes: &TwinBox) -> [f64; 2] {
+    pub fn lower_bounds(&self, boxes: &TwinBox) -> [f64; 2] {
         [0, 1].map(|lane| {
             let b = boxes.lane(lane);
             let height = self.up.dot(&b.center) + self.origin;

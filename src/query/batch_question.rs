@@ -35,11 +35,21 @@ pub enum Output {
     Depth,
     /// Where faces touch.
     Patch,
+    /// How pairs change when their bodies move.
+    Derivatives,
 }
 
 impl Output {
-    /// Every one, from the cheapest on.
-    pub const ALL: [Self; 6] = [Self::Verdict, Self::Pairs, Self::Distance, Self::Witness, Self::Depth, Self::Patch];
+    /// Every one, each after what it needs.
+    pub const ALL: [Self; 7] = [
+        Self::Verdict,
+        Self::Pairs,
+        Self::Distance,
+        Self::Witness,
+        Self::Depth,
+        Self::Patch,
+        Self::Derivatives,
+    ];
 
     /// What a question wants for it.
     #[must_use]
@@ -51,6 +61,7 @@ impl Output {
             Self::Witness => Wants { witness: true, ..Wants::VERDICT },
             Self::Depth => Wants { depth: true, ..Wants::VERDICT },
             Self::Patch => Wants { patch: true, ..Wants::VERDICT },
+            Self::Derivatives => Wants { derivatives: true, ..Wants::VERDICT },
         }
     }
 }
@@ -86,7 +97,14 @@ impl BatchQuestion {
     /// distance, and motions list no pairs.
     #[must_use]
     pub fn outputs(&self) -> &'static [Output] {
-        const MOTIONS: [Output; 5] = [Output::Verdict, Output::Distance, Output::Witness, Output::Depth, Output::Patch];
+        const MOTIONS: [Output; 6] = [
+            Output::Verdict,
+            Output::Distance,
+            Output::Witness,
+            Output::Depth,
+            Output::Patch,
+            Output::Derivatives,
+        ];
         let [_, with_pairs @ ..] = &Output::ALL;
         let [_, _, of_distance @ ..] = &Output::ALL;
         match self {

@@ -14,7 +14,7 @@ use super::contacts::{
 use super::declared::{Coverage, declared_empty, effects_of};
 use super::pairs::Pairs;
 use super::request::{Context, Mode, PairQuery, Wants};
-use super::search::Search;
+use super::search::{Plan, Search};
 use crate::limits::LimitExceeded;
 use crate::narrow_phase::Cost;
 use crate::scene::{Asker, BodyId, Changes, Effect, Effects, Epoch, NotKept, Revision, Snapshot};
@@ -76,10 +76,18 @@ impl ContactTracker {
         let wanted = effects_of(context.wants, context.margin).and(Effects::of(Effect::Events));
         let empty = declared_empty(snapshot, &Asker::Everybody, context, wanted)?;
         let coverage = Coverage::of(empty, Context::default().max_pairs);
-        let (measured, cost) = self.measure(&pairs, changes.as_ref(), stop)?;
+        let plan = pairs.plan(stop);
+        let (measured, mut cost) = self.measure(&pairs, &plan, changes.as_ref())?;
         let suspects = self.suspects(snapshot, changes.as_ref());
         let mut events = self.differences(&pairs, measured, &suspects);
         self.check_count(&events)?;
+        let told = |event: &&mut ContactEvent| self.question.stays || event.kind != ContactEventKind::Stay;
+        for pair in events.iter_mut().filter(told).filter_map(|event| event.pair.as_mut()) {
+            plan.derive(std::slice::from_mut(pair), [None; 2], &pairs.stage(0), &mut cost);
+        }
+        if stop() {
+            return Err(NotAdvanced::Stopped);
+        }
 
         let from = self.revision();
         self.at = Some((snapshot.epoch(), snapshot.revision()));
@@ -149,17 +157,16 @@ impl ContactTracker {
     fn measure(
         &self,
         pairs: &Pairs<'_>,
+        plan: &Plan,
         changes: Option<&Changes>,
-        stop: &dyn Fn() -> bool,
     ) -> Result<(Vec<Measured>, Cost), NotAdvanced> {
-        let plan = pairs.plan(stop);
-        let mut search = Search::new(&plan);
+        let mut search = Search::new(plan);
         match changes {
             Some(changes) => pairs.changed(changes, &mut search),
             None => pairs.everything(&mut search),
         }
-        let found = search.finish();
-        if stop() {
+        let found = search.finish(None);
+        if (plan.stop)() {
             return Err(NotAdvanced::Stopped);
         }
         if let Some(unclaimed) = found.unclaimed {

@@ -2,8 +2,11 @@
 
 use super::answer::Refused;
 use super::request::Context;
-use crate::narrow_phase::MOST_POINTS;
+use crate::narrow_phase::{DerivativeGoal, MOST_POINTS};
 use crate::scene::{Body, BodyId, Snapshot};
+
+/// Samples of a pair at most: each is two or more separations, between which no other work is done.
+pub(super) const MOST_SAMPLES: u32 = 65_536;
 
 /// The filter of a request, checked against the scene.
 pub(super) struct Sieve<'a> {
@@ -37,6 +40,10 @@ impl<'a> Sieve<'a> {
         }
         if context.wants.patch && cfg!(not(feature = "effect-patch")) {
             return Err(Refused::NotBuilt { field: "context.wants", effect: "patch" });
+        }
+        derivatives(&context.derivatives)?;
+        if context.wants.derivatives && cfg!(not(feature = "effect-derivatives")) {
+            return Err(Refused::NotBuilt { field: "context.wants", effect: "derivatives" });
         }
         let not_found = |what, name: String| Refused::NotFound { what, name, revision: snapshot.revision() };
         let filter = &context.filter;
@@ -74,6 +81,17 @@ impl<'a> Sieve<'a> {
     pub fn disregards_allowed_collisions(&self) -> bool {
         self.disregard_allowed
     }
+}
+
+/// What random methods are asked for, whichever method it is.
+fn derivatives(goal: &DerivativeGoal) -> Result<(), Refused> {
+    length("context.derivatives.epsilon", goal.epsilon)?;
+    let samples = goal.samples;
+    if samples == 0 || samples > MOST_SAMPLES {
+        let problem = format!("is {samples}, not from 1 to {MOST_SAMPLES}");
+        return Err(Refused::Invalid { field: "context.derivatives.samples".to_owned(), problem });
+    }
+    Ok(())
 }
 
 /// A finite number that is not negative.

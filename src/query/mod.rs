@@ -12,6 +12,7 @@ mod contact_tracker;
 mod contacts;
 mod context;
 mod declared;
+mod derivatives;
 mod item_batch;
 mod mesh_card;
 mod met;
@@ -33,6 +34,7 @@ mod rays;
 mod request;
 mod robot_parts;
 mod search;
+mod stage;
 mod states;
 mod verdict;
 

@@ -10,6 +10,7 @@ use super::overlay::Place;
 use super::request::{CheckMotions, Find, Motions as Layout, Wants};
 use super::robot_parts::{Placed, RobotParts};
 use super::search::{Plan, Search};
+use super::stage::{Stage, Standing};
 use super::states::against_scene;
 use crate::robot::JointLine;
 
@@ -107,13 +108,13 @@ impl<'a> Motions<'a> {
             return ItemAnswer { cost, ..ItemAnswer::invalid(format!("context.solver: {unclaimed}")) };
         }
         match outcome {
-            Some(outcome) => self.told(&outcome, gauge, stop),
+            Some(outcome) => self.told(item, &outcome, gauge, stop),
             None => ItemAnswer::without_work(Verdict::NotRun),
         }
     }
 
     /// The answer, with the pair that decides it.
-    fn told(&self, outcome: &Outcome, mut gauge: Gauge, stop: &dyn Fn() -> bool) -> ItemAnswer {
+    fn told(&self, item: usize, outcome: &Outcome, mut gauge: Gauge, stop: &dyn Fn() -> bool) -> ItemAnswer {
         let (verdict, at) = verdict(outcome);
         let reached = match verdict {
             Verdict::Collision => Some((outcome.apart_until, outcome.collision)),
@@ -125,7 +126,7 @@ impl<'a> Motions<'a> {
             Verdict::Indeterminate(_) => outcome.not_apart.or(outcome.not_free).map(|undecided| undecided.t),
             Verdict::Collision | Verdict::Margin | Verdict::Free | Verdict::NotRun | Verdict::InvalidInput => None,
         };
-        let nearest = at.and_then(|event| self.pair_at(&event, &mut gauge, stop));
+        let nearest = at.and_then(|event| self.pair_at(item, &event, &mut gauge, stop));
         ItemAnswer {
             nearest,
             motion: Some(MotionAnswer {
@@ -141,7 +142,13 @@ impl<'a> Motions<'a> {
     }
 
     /// The pair that decides, as a question about its state would have it.
-    fn pair_at(&self, event: &Event, gauge: &mut Gauge, stop: &dyn Fn() -> bool) -> Option<PairAnswer> {
+    fn pair_at(
+        &self,
+        item: usize,
+        event: &Event,
+        gauge: &mut Gauge,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<PairAnswer> {
         let robot = &self.movable.robot;
         let context = &self.request.context;
         let wants = Wants { distance: true, pairs: false, ..context.wants };
@@ -151,7 +158,9 @@ impl<'a> Motions<'a> {
         gauge.line.positions(event.t, &mut positions);
         robot.place(&positions, &mut gauge.placed);
         self.offer(event.subject, &gauge.placed, &mut search);
-        let found = search.finish();
+        let standing = Standing { parts: robot, positions: &positions, placed: &gauge.placed };
+        let stage = Stage { item, snapshot: robot.snapshot, shape: None, robot: Some(standing) };
+        let found = search.finish(Some(&stage));
         gauge.cost += found.cost;
         found.nearest
     }

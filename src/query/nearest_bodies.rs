@@ -4,10 +4,12 @@ use super::answer::{PairAnswer, Refused, Side, Verdict, Witness};
 use super::cast_answer::NearestItem;
 use super::cast_request::NearestBodies;
 use super::declared::Coverage;
+use super::derivatives::{DerivativesOf, derivatives_of};
 use super::item_batch::ItemBatch;
 use super::opponents::Opponents;
 use super::patch::{PatchOf, patch_of};
 use super::request::{Subject, Wants};
+use super::stage::Stage;
 use crate::geometry::{Aabb, Placement, Shape};
 use crate::narrow_phase::{Cost, Depth, Goal, NoSeparation, Separation, separation};
 use crate::scene::{Body, BodyId, Effect, Effects, Snapshot};
@@ -19,6 +21,8 @@ pub struct Neighbours<'a> {
     wants: Wants,
     /// What makes patches, where they are wanted.
     patch: Option<PatchOf>,
+    /// What makes derivatives, where they are wanted.
+    derivatives: Option<DerivativesOf>,
     coverage: Coverage,
 }
 
@@ -52,7 +56,8 @@ impl<'a> Neighbours<'a> {
         // In an overlap the order is that of the depths.
         let coverage =
             opponents.coverage(request.items.iter().filter_map(Subject::body), Effects::of(Effect::Depth))?;
-        Ok(Self { opponents, request, wants, patch: patch_of(wants), coverage })
+        let (patch, derivatives) = (patch_of(wants), derivatives_of(wants));
+        Ok(Self { opponents, request, wants, patch, derivatives, coverage })
     }
 
     fn asker(&self, item: usize) -> Result<Asker<'a>, String> {
@@ -76,7 +81,7 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    fn nearest(&self, asker: &Asker, stop: &dyn Fn() -> bool) -> Result<NearestItem, String> {
+    fn nearest(&self, item: usize, asker: &Asker, stop: &dyn Fn() -> bool) -> Result<NearestItem, String> {
         let Opponents { snapshot, context, .. } = &self.opponents;
         let cut_off = context.cut_off.unwrap_or(f64::INFINITY);
         let mut found = Found { count: self.request.count, cut_off, pairs: Vec::new(), cost: Cost::default() };
@@ -130,7 +135,18 @@ impl<'a> Neighbours<'a> {
                 }
             }
         }
-        problem.map_or_else(|| Ok(found.finish()), Err)
+        if let Some(problem) = problem {
+            return Err(problem);
+        }
+        let mut told = found.finish();
+        if let Some(derivatives) = self.derivatives {
+            let shape = asker.body.is_none().then_some((asker.shape, asker.at));
+            let stage = Stage { item, snapshot, shape, robot: None };
+            for pair in &mut told.nearest {
+                pair.derivatives = derivatives(pair, &stage, context, stop, &mut told.cost);
+            }
+        }
+        Ok(told)
     }
 
     fn pair(&self, found: &Separation, asker: &Asker, body: &Body, margin: f64, cost: &mut Cost) -> PairAnswer {
@@ -221,7 +237,7 @@ impl ItemBatch for Neighbours<'_> {
     }
 
     fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> NearestItem {
-        let answer = self.asker(item).and_then(|asker| self.nearest(&asker, stop));
+        let answer = self.asker(item).and_then(|asker| self.nearest(item, &asker, stop));
         let invalid =
             |problem| NearestItem { problem: Some(problem), ..NearestItem::without_work(Verdict::InvalidInput) };
         answer.unwrap_or_else(invalid)

@@ -5,7 +5,8 @@ use super::context::Sieve;
 use super::overlay::Place;
 use super::request::{PairQuery, Subject, Wants};
 use super::search::{Found, Party, Plan, Search};
-use crate::geometry::{Aabb, Pose, Shape};
+use super::stage::Stage;
+use crate::geometry::{Aabb, Placement, Shape};
 use crate::scene::{Body, BodyId, Snapshot};
 
 /// A checked request.
@@ -80,6 +81,7 @@ impl<'a> Pairs<'a> {
     pub fn answer(&self, item: usize, stop: &dyn Fn() -> bool) -> ItemAnswer {
         let plan = self.plan(stop);
         let mut search = Search::new(&plan);
+        let mut stage = self.stage(item);
         match &self.request.items[item] {
             Subject::All => self.everything(&mut search),
             Subject::ChangedSince(revision) => match self.snapshot.changes_since(*revision) {
@@ -101,10 +103,19 @@ impl<'a> Pairs<'a> {
                         "items[{item}].shape: a {kind} is unbounded, and so is body {id}: they have no signed distance"
                     ));
                 }
-                self.shape(shape, pose, &mut search);
+                let at = pose.placement();
+                stage.shape = Some((shape, at));
+                self.shape(shape, &at, &mut search);
             }
         }
-        finish(search.finish())
+        let mut whole = finish(search.finish(Some(&stage)));
+        plan.derive(&mut whole.pairs, [whole.nearest.as_ref(), None], &stage, &mut whole.cost);
+        whole
+    }
+
+    /// Where the sides of pairs of bodies are.
+    pub(super) fn stage(&self, item: usize) -> Stage<'a> {
+        Stage { item, snapshot: self.snapshot, shape: None, robot: None }
     }
 
     /// Layers and mask of a bare shape.
@@ -148,12 +159,11 @@ impl<'a> Pairs<'a> {
         });
     }
 
-    fn shape(&self, shape: &Shape, pose: &Pose, search: &mut Search) {
-        let at = pose.placement();
-        let query = Party { side: Side::Query { subshape: 0 }, shape, at: &at };
+    fn shape(&self, shape: &Shape, at: &Placement, search: &mut Search) {
+        let query = Party { side: Side::Query { subshape: 0 }, shape, at };
         let (layers, mask) = self.query_layers();
         let margin = self.request.context.margin;
-        self.against_bodies(search, &query, shape.placed_bounds(&at), &mut |other| {
+        self.against_bodies(search, &query, shape.placed_bounds(at), &mut |other| {
             other.meets(layers, mask).then_some(margin)
         });
     }

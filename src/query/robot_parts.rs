@@ -182,6 +182,24 @@ impl<'a> RobotParts<'a> {
         admits.then(own)
     }
 
+    /// Which part a side of a pair stands for; none for a body that the robot does not hold.
+    #[cfg(feature = "effect-derivatives")]
+    pub fn part_of(&self, side: &Side) -> Option<usize> {
+        // Shapes of links come first, in order.
+        let own = self.parts.partition_point(|part| part.held.is_none());
+        match *side {
+            Side::Link { link, shape, .. } => {
+                let place = |part: &LinkPart| (part.link, part.shape_index);
+                self.parts[..own].binary_search_by_key(&(link, shape), place).ok()
+            }
+            Side::Body { id, .. } => {
+                let of = |part: &LinkPart| part.held.is_some_and(|held| held.id == id);
+                self.parts[own..].iter().position(of).map(|index| own + index)
+            }
+            Side::Query { .. } => None,
+        }
+    }
+
     pub fn placed(&self) -> Placed {
         let n = self.parts.len();
         let nowhere = Aabb { min: Vec3::zeros(), max: Vec3::zeros() };

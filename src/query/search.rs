@@ -4,8 +4,10 @@
 //! found, so the bracket of the minimum is the minimum of the brackets, whatever the order of the walk.
 
 use super::answer::{PairAnswer, Side, Verdict, Witness};
+use super::derivatives::{DerivativesOf, derivatives_of};
 use super::patch::{PatchOf, patch_of};
 use super::request::{Context, Wants};
+use super::stage::Stage;
 use crate::geometry::{Placement, Shape};
 use crate::narrow_phase::{Bracket, Cost, Depth, Goal, NoSeparation, Separation, Unclaimed, separation};
 
@@ -27,6 +29,8 @@ pub(super) struct Plan<'a> {
     within: Option<f64>,
     /// What makes patches, where they are wanted.
     patch: Option<PatchOf>,
+    /// What makes derivatives, where they are wanted.
+    derivatives: Option<DerivativesOf>,
     pub stop: &'a dyn Fn() -> bool,
 }
 
@@ -34,12 +38,25 @@ impl<'a> Plan<'a> {
     pub fn new(context: &'a Context, wants: Wants, largest_scene_margin: f64, stop: &'a dyn Fn() -> bool) -> Self {
         let largest_margin = context.margin.max(largest_scene_margin);
         let wants = wants.closed();
-        Self { context, wants, largest_margin, within: None, patch: patch_of(wants), stop }
+        let (patch, derivatives) = (patch_of(wants), derivatives_of(wants));
+        Self { context, wants, largest_margin, within: None, patch, derivatives, stop }
     }
 
     /// The same, with every pair listed that is not proved farther than `within` metres, if that is said.
     pub fn listing(self, within: Option<f64>) -> Self {
         Self { within, ..self }
+    }
+
+    /// Gives derivatives to pairs that are told, where they are wanted. Those of pairs that were told before, as nearest ones, are theirs.
+    pub fn derive(&self, pairs: &mut [PairAnswer], told: [Option<&PairAnswer>; 2], stage: &Stage, cost: &mut Cost) {
+        let Some(derivatives) = self.derivatives else { return };
+        for pair in pairs {
+            let before = told.into_iter().flatten().find(|before| sides(before) == sides(pair));
+            pair.derivatives = match before {
+                Some(before) => before.derivatives.clone(),
+                None => derivatives(pair, stage, self.context, self.stop, cost),
+            };
+        }
     }
 
     fn depth(&self) -> Depth {
@@ -229,15 +246,20 @@ impl<'a> Search<'a> {
         self.truncated |= shorten(&mut self.pairs, self.plan.context.max_pairs);
     }
 
-    /// The verdict, and what was wanted beside it.
-    pub fn finish(mut self) -> Found {
+    /// The verdict, and what was wanted beside it. With a stage the nearest pair has its derivatives; [`Plan::derive`] gives them to those of the
+    /// list, once that is cut.
+    pub fn finish(mut self, stage: Option<&Stage>) -> Found {
         self.shorten();
         let bracket = self.bracket;
         let nearest = if self.plan.wants.distance {
             // Only what is proved to be beyond the cut-off is left away.
             let within = bracket.lower <= self.plan.cut_off();
             // The minimum is bracketed by all pairs together; the pair it is told by has its own proof in it.
-            self.nearest.filter(|_| within).map(|pair| PairAnswer { bracket, ..pair })
+            let mut nearest = self.nearest.filter(|_| within);
+            if let (Some(pair), Some(stage), None) = (&mut nearest, stage, &self.unclaimed) {
+                self.plan.derive(std::slice::from_mut(pair), [None; 2], stage, &mut self.cost);
+            }
+            nearest.map(|pair| PairAnswer { bracket, ..pair })
         } else {
             self.decider.filter(|pair| pair.verdict != Verdict::Free)
         };

@@ -6,6 +6,7 @@ use super::pairs::finish;
 use super::request::{CheckStates, Wants};
 use super::robot_parts::{Placed, RobotParts, SelfPair};
 use super::search::{Party, Plan, Search};
+use super::stage::{Stage, Standing};
 use crate::scene::BodyId;
 
 /// Box distances are rounded down by this factor, so that none is above the true one.
@@ -75,10 +76,14 @@ impl<'a> States<'a> {
         if !own.is_settled() {
             all_against_scene(&self.robot, &mut outer, &scratch.placed);
         }
-        let (own, outer) = (own.finish(), outer.finish());
+        let standing = Standing { parts: &self.robot, positions, placed: &scratch.placed };
+        let stage = Stage { item, snapshot: self.robot.snapshot, shape: None, robot: Some(standing) };
+        let (own, outer) = (own.finish(Some(&stage)), outer.finish(Some(&stage)));
         let minima = self.wants.distance.then(|| (own.nearest.clone(), outer.nearest.clone()));
         let (nearest_self, nearest_scene) = minima.unwrap_or_default();
-        let whole = finish(own.and(outer, &plan));
+        let mut whole = finish(own.and(outer, &plan));
+        let told = [nearest_self.as_ref(), nearest_scene.as_ref()];
+        plan.derive(&mut whole.pairs, told, &stage, &mut whole.cost);
         if whole.problem.is_some() {
             return whole;
         }

@@ -68,6 +68,12 @@ pub struct MeanCost {
     pub patch_corners: f64,
     /// As in [`Cost`].
     pub patch_cuts: f64,
+    /// As in [`Cost`].
+    pub derivative_separations: f64,
+    /// As in [`Cost`].
+    pub derivative_supports: f64,
+    /// As in [`Cost`].
+    pub derivative_corners: f64,
 }
 
 impl MeanCost {
@@ -82,6 +88,9 @@ impl MeanCost {
             escalations: mean(total.escalations),
             patch_corners: mean(total.patch_corners),
             patch_cuts: mean(total.patch_cuts),
+            derivative_separations: mean(total.derivative_separations),
+            derivative_supports: mean(total.derivative_supports),
+            derivative_corners: mean(total.derivative_corners),
         }
     }
 }

@@ -60,7 +60,7 @@ impl Default for DerivativeGoal {
 /// What derivatives cost. Counters only, as in [`Cost`](crate::narrow_phase::Cost).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DerivativeCost {
-    /// Separations that were asked again, in moved places.
+    /// Separations that were asked again: of both shapes in moved places, and of other pieces that may be as near.
     pub separations: u64,
     /// Support points of one shape.
     pub supports: u64,

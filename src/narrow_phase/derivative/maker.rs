@@ -4,6 +4,7 @@ use super::super::goal::Goal;
 use super::super::outcome::Separation;
 use super::derivatives::{DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives};
 use super::exact::exact;
+use super::runner_up::is_contested;
 use crate::geometry::{Placement, Shape};
 
 /// The derivatives of what `found` says of two shapes in these places.
@@ -24,12 +25,14 @@ pub fn derivatives(
     again: &Goal,
 ) -> Result<Derivatives, NoDerivatives> {
     let pair = [(a, at_a), (b, at_b)];
-    match goal.method {
+    let mut made = match goal.method {
         DerivativeMethod::Exact => exact(pair, found, true),
         DerivativeMethod::ExactCell => exact(pair, found, false),
         DerivativeMethod::FiniteDifference
         | DerivativeMethod::Smoothed0
         | DerivativeMethod::Smoothed1Gaussian
         | DerivativeMethod::Smoothed1Gumbel => Err(NoDerivatives::Stopped).inspect_err(|_| _ = again.margin),
-    }
+    }?;
+    made.is_contested = is_contested(pair, found, again, &mut made.cost)?;
+    Ok(made)
 }

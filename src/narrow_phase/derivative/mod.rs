@@ -2,7 +2,7 @@
 //!
 //! [`derivatives`] is the door; `docs/derivations/derivatives.md` has the formulae and what is promised. `derivatives` has what is asked and
 //! answered, `maker` chooses by method. `exact` is by formula: `side` tells what of a shape bends how near the witness, `response` solves for the
-//! change of the normal and the points, `polish` makes the normal of smooth pairs as exact as rounding lets it be.
+//! change of the normal and the points, `polish` makes the normal of smooth pairs as exact as rounding lets it be. `runner_up` looks for another pair of pieces that is as near.
 
 mod derivatives;
 #[cfg(feature = "effect-derivatives")]
@@ -13,6 +13,8 @@ mod maker;
 mod polish;
 #[cfg(feature = "effect-derivatives")]
 mod response;
+#[cfg(feature = "effect-derivatives")]
+mod runner_up;
 #[cfg(feature = "effect-derivatives")]
 mod side;
 
