@@ -41,15 +41,8 @@ pub enum Output {
 
 impl Output {
     /// Every one, each after what it needs.
-    pub const ALL: [Self; 7] = [
-        Self::Verdict,
-        Self::Pairs,
-        Self::Distance,
-        Self::Witness,
-        Self::Depth,
-        Self::Patch,
-        Self::Derivatives,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Verdict, Self::Pairs, Self::Distance, Self::Witness, Self::Depth, Self::Patch, Self::Derivatives];
 
     /// What a question wants for it.
     #[must_use]
@@ -97,14 +90,8 @@ impl BatchQuestion {
     /// distance, and motions list no pairs.
     #[must_use]
     pub fn outputs(&self) -> &'static [Output] {
-        const MOTIONS: [Output; 6] = [
-            Output::Verdict,
-            Output::Distance,
-            Output::Witness,
-            Output::Depth,
-            Output::Patch,
-            Output::Derivatives,
-        ];
+        const MOTIONS: [Output; 6] =
+            [Output::Verdict, Output::Distance, Output::Witness, Output::Depth, Output::Patch, Output::Derivatives];
         let [_, with_pairs @ ..] = &Output::ALL;
         let [_, _, of_distance @ ..] = &Output::ALL;
         match self {

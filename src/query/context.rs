@@ -33,11 +33,6 @@ impl<'a> Sieve<'a> {
             let problem = format!("is {points}, not from 1 to {MOST_POINTS}");
             return Err(Refused::Invalid { field: "context.max_patch_points".to_owned(), problem });
         }
-        length("context.derivatives.epsilon", context.derivatives.epsilon)?;
-        if context.derivatives.samples == 0 {
-            let (field, problem) = ("context.derivatives.samples".to_owned(), "is zero".to_owned());
-            return Err(Refused::Invalid { field, problem });
-        }
         if context.wants.patch && cfg!(not(feature = "effect-patch")) {
             return Err(Refused::NotBuilt { field: "context.wants", effect: "patch" });
         }

@@ -83,8 +83,7 @@ mod made {
             about(twists, body, side.at.translation - poses[link as usize].translation());
             gradients[body] = Some(LinkGradient { link, twist: twists.signed_distance[body] });
         }
-        let gradient =
-            |one, other| standing.parts.model.joint_gradient(standing.positions, poses, one, other);
+        let gradient = |one, other| standing.parts.model.joint_gradient(standing.positions, poses, one, other);
         match &gradients {
             [Some(one), other] => gradient(one, other.as_ref()),
             [None, Some(one)] => gradient(one, None),

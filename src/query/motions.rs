@@ -142,13 +142,7 @@ impl<'a> Motions<'a> {
     }
 
     /// The pair that decides, as a question about its state would have it.
-    fn pair_at(
-        &self,
-        item: usize,
-        event: &Event,
-        gauge: &mut Gauge,
-        stop: &dyn Fn() -> bool,
-    ) -> Option<PairAnswer> {
+    fn pair_at(&self, item: usize, event: &Event, gauge: &mut Gauge, stop: &dyn Fn() -> bool) -> Option<PairAnswer> {
         let robot = &self.movable.robot;
         let context = &self.request.context;
         let wants = Wants { distance: true, pairs: false, ..context.wants };

@@ -1001,7 +1001,8 @@ type DerivativeOptions struct {
 	// body's radius, and in radians; turned directions of DERIVATIVE_METHOD_SMOOTHED_1_GAUSSIAN in radians; noise on heights of
 	// DERIVATIVE_METHOD_SMOOTHED_1_GUMBEL as a part of each piece's radius. 0 or absent: chosen from the pair
 	Epsilon *float64 `protobuf:"fixed64,2,opt,name=epsilon,proto3,oneof" json:"epsilon,omitempty"`
-	// Pairs of samples, there and back, of the random methods, count, from 1 to `max_derivative_samples` of the limits; absent: 64
+	// Pairs of samples, there and back, of the random methods, count, from 1 to 65536 and to `max_derivative_samples` of the limits;
+	// absent: 64
 	Samples *uint32 `protobuf:"varint,3,opt,name=samples,proto3,oneof" json:"samples,omitempty"`
 	Seed    *uint64 `protobuf:"varint,4,opt,name=seed,proto3,oneof" json:"seed,omitempty"` // of the random methods: equal seeds have equal bytes; absent: 0
 }

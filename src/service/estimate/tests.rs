@@ -11,8 +11,7 @@ use crate::service::{Change, Config, Patience, Service, Target};
 const BOXES: usize = 40;
 
 /// Of a question for distances: a build without patches or derivatives has no price for them.
-const OUTPUTS: usize =
-    4 + cfg!(feature = "effect-patch") as usize + cfg!(feature = "effect-derivatives") as usize;
+const OUTPUTS: usize = 4 + cfg!(feature = "effect-patch") as usize + cfg!(feature = "effect-derivatives") as usize;
 
 async fn service(limits: Limits) -> (Arc<Service>, Target) {
     let service = Service::new(&Config { threads: 1, limits }).unwrap();

@@ -376,7 +376,8 @@ export type DerivativeOptions = Message<"clearance.v1.DerivativeOptions"> & {
   epsilon?: number | undefined;
 
   /**
-   * Pairs of samples, there and back, of the random methods, count, from 1 to `max_derivative_samples` of the limits; absent: 64
+   * Pairs of samples, there and back, of the random methods, count, from 1 to 65536 and to `max_derivative_samples` of the limits;
+   * absent: 64
    *
    * @generated from field: optional uint32 samples = 3;
    */

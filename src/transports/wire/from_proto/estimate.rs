@@ -74,13 +74,14 @@ fn output(index: usize, number: i32) -> Result<Output, ServiceError> {
 
 fn known_output(output: v1::Output) -> Option<Output> {
     match output {
-        v1::Output::Unspecified | v1::Output::Derivatives => None,
+        v1::Output::Unspecified => None,
         v1::Output::Verdict => Some(Output::Verdict),
         v1::Output::Pairs => Some(Output::Pairs),
         v1::Output::Distance => Some(Output::Distance),
         v1::Output::Witness => Some(Output::Witness),
         v1::Output::Depth => Some(Output::Depth),
         v1::Output::Patch => Some(Output::Patch),
+        v1::Output::Derivatives => Some(Output::Derivatives),
     }
 }
 
@@ -153,7 +154,21 @@ fn mean_cost(cost: &v1::MeanCost) -> MeanCost {
         escalations,
         patch_corners,
         patch_cuts,
-        ..
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
     } = *cost;
-    MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
+    MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    }
 }
