@@ -147,7 +147,7 @@ type EstimateRequest struct {
 	sizeCache     protoimpl.SizeCache
 	unknownFields protoimpl.UnknownFields
 
-	// As it would be asked. Scene, revision, filter, margin, solver, overlays, budget and deadline count; its wants, accuracy and
+	// As it would be asked. Scene, revision, filter, margin, solver, derivatives, overlays, budget and deadline count; its wants, accuracy and
 	// resolution do not, because each row has its own, nor do its mode, as every item is asked for itself, and its form of answer
 	//
 	// Types that are assignable to Question:

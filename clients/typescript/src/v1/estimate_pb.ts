@@ -26,7 +26,7 @@ export const file_clearance_v1_estimate: GenFile = /*@__PURE__*/
  */
 export type EstimateRequest = Message<"clearance.v1.EstimateRequest"> & {
   /**
-   * As it would be asked. Scene, revision, filter, margin, solver, overlays, budget and deadline count; its wants, accuracy and
+   * As it would be asked. Scene, revision, filter, margin, solver, derivatives, overlays, budget and deadline count; its wants, accuracy and
    * resolution do not, because each row has its own, nor do its mode, as every item is asked for itself, and its form of answer
    *
    * @generated from oneof clearance.v1.EstimateRequest.question
