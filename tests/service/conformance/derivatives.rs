@@ -197,8 +197,8 @@ async fn seeds_reproduce(door: &impl Door) {
 async fn a_robots_state_has_the_gradient_of_its_joints(door: &impl Door) {
     door.create_scene(SCENE).await.unwrap();
     let robot = door.load_robot(load(ROBOT)).await.unwrap();
-    let (turn, lower) = (0.4_f64, -0.5);
-    let (hook, away) = ([turn.cos(), turn.sin(), lower], [0.3, 0.1, -0.4]);
+    let (turn, lower) = (0.4, -0.5);
+    let (hook, away) = ([libm::cos(turn), libm::sin(turn), lower], [0.3, 0.1, -0.4]);
     let ball = add("ball", sphere(0.2), at(hook[0] + away[0], hook[1] + away[1], hook[2] + away[2]));
     door.apply(apply(vec![add_robot("arm", &robot.id), ball])).await.unwrap();
     let mut question = states(vec![turn, lower]);
@@ -210,7 +210,7 @@ async fn a_robots_state_has_the_gradient_of_its_joints(door: &impl Door) {
     near(&[nearest.signed_distance], &[length - 0.3], "distance of hook and ball");
     let n = away.map(|x| x / length);
     // A is the hook: it moves across its arm when the arm turns, and up when it is raised.
-    near(&told.joints, &[n[0] * turn.sin() - n[1] * turn.cos(), -n[2]], "gradient");
+    near(&told.joints, &[n[0] * libm::sin(turn) - n[1] * libm::cos(turn), -n[2]], "gradient");
     near(&told.of_a.as_ref().unwrap().signed_distance[..3], &[-n[0], -n[1], -n[2]], "distance by A");
 }
 
