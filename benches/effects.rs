@@ -1,7 +1,7 @@
 //! What does each effect cost? As multiples of a verdict on the same pairs, and of the question for verdicts in the same scene.
 //!
-//! `cargo bench --no-default-features --features effect-motion,effect-patch --bench effects`, below a minute. Half of the bodies are
-//! boxes, half hulls of 40 corners; they fill a cube so that some touch. Pairs are those whose boxes are within the margin.
+//! `cargo bench --no-default-features --features effect-derivatives,effect-motion,effect-patch --bench effects`, about a minute. Half of the
+//! bodies are boxes, half hulls of 40 corners; they fill a cube so that some touch. Pairs are those whose boxes are within the margin.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -9,7 +9,8 @@ use std::time::Instant;
 
 use clearance::geometry::{ConvexHull, Pose, Quaternion, RigidMotion, Shape, Vec3};
 use clearance::narrow_phase::{
-    Cost, Depth, Goal, ImpactGoal, PatchGoal, Separation, contact_patch, impact, separation,
+    Cost, Depth, DerivativeGoal, Goal, ImpactGoal, PatchGoal, Separation, contact_patch, derivatives, impact,
+    separation,
 };
 use clearance::query::{
     CastMode, CastShapes, Casts, ContactQuestion, ContactTracker, Context, DEFAULT_RESOLUTION, ItemBatch, Mode, Moved,
@@ -55,6 +56,7 @@ fn scene() -> Scene {
 /// What is wanted for an effect, with what it needs; none for those that are questions of their own.
 fn wants(effect: Effect) -> Option<(Wants, f64)> {
     let wants = |distance, witness, depth, patch| Wants { distance, witness, depth, patch, ..Wants::VERDICT };
+    let all = wants(true, true, true, false);
     match effect {
         Effect::Verdict => Some((Wants::VERDICT, 0.0)),
         Effect::Margin => Some((Wants::VERDICT, MARGIN)),
@@ -62,7 +64,9 @@ fn wants(effect: Effect) -> Option<(Wants, f64)> {
         Effect::Witness => Some((wants(true, true, false, false), 0.0)),
         Effect::Depth => Some((wants(true, false, true, false), 0.0)),
         Effect::Patch => Some((wants(true, true, true, true), 0.0)),
-        Effect::Motion | Effect::Derivatives | Effect::Events => None,
+        // By formula; in overlaps, too.
+        Effect::Derivatives => Some((Wants { derivatives: true, ..all }, 0.0)),
+        Effect::Motion | Effect::Events => None,
     }
 }
 
@@ -102,6 +106,11 @@ fn ask_pair(effect: Effect, pair: [&Body; 2]) -> Option<Cost> {
         let goal = PatchGoal { cut_off: margin, ..PatchGoal::default() };
         let patch = contact_patch(&a.shape, &b.shape, &a.placement, &b.placement, &found, &goal);
         cost.patch_corners += black_box(patch.expect("both are convex")).cost.corners;
+    }
+    if wants.derivatives {
+        let goal = DerivativeGoal::default();
+        let made = derivatives(&a.shape, &b.shape, &a.placement, &b.placement, &found, &goal, &Goal::penetration());
+        cost.derivative_corners += black_box(made.expect("both are convex")).cost.corners;
     }
     Some(cost)
 }
@@ -160,8 +169,8 @@ fn main() {
     let touching = pairs.iter().filter(|pair| measured(**pair, &Goal::verdict()).bracket.upper <= 0.0).count();
     let mut tracker = ContactTracker::new(ContactQuestion::default());
     tracker.advance(&snapshot, &|| false).expect("a valid question");
-    let effects = Effect::EACH.into_iter().filter(|effect| *effect != Effect::Derivatives);
-    let mut rows: Vec<Row> = effects.map(|effect| Row { effect, pair: Vec::new(), question: Vec::new() }).collect();
+    let mut rows: Vec<Row> =
+        (Effect::EACH.into_iter()).map(|effect| Row { effect, pair: Vec::new(), question: Vec::new() }).collect();
     for round in 0..ROUNDS {
         for row in &mut rows {
             let effect = row.effect;

@@ -5,7 +5,7 @@ use super::hull_climb::{self, StartTable};
 use super::hull_scan::Scan;
 use super::hull_surface::HullSurface;
 use super::shape::position;
-use super::{Aabb, HullInterior, InvalidShape, Vec3, length};
+use super::{Aabb, CornerSums, CornerWeights, HullInterior, InvalidShape, Vec3, length};
 
 /// The convex hull of some points, possibly flat, a segment or a single point.
 ///
@@ -103,6 +103,12 @@ impl ConvexHull {
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
+    }
+
+    /// Sums over the corners, weighed by their heights.
+    #[must_use]
+    pub fn weighted(&self, weights: &CornerWeights) -> CornerSums {
+        self.scan.weighted(weights, self.points.len())
     }
 
     /// Every length multiplied by `factor`, which keeps the corners the corners.

@@ -6,7 +6,7 @@
 
 use pulp::{Arch, NullaryFnOnce};
 
-use super::Vec3;
+use super::{CornerSums, CornerWeights, Vec3};
 
 /// Points that are looked at together.
 const LANES: usize = 8;
@@ -50,6 +50,11 @@ impl Scan {
         let [block] = self.blocks.as_slice() else { return None };
         let values = products(block, direction);
         Some(first_equal(&values, greatest(&values)).unwrap_or(0))
+    }
+
+    /// Weighted sums over the first `count` points, which are all of them.
+    pub fn weighted(&self, weights: &CornerWeights, count: usize) -> CornerSums {
+        weights.sums(&self.blocks, count, self.arch)
     }
 }
 

@@ -31,6 +31,7 @@ mod triangle_mesh;
 mod twin;
 pub mod vector;
 mod voxels;
+mod weighted_corners;
 
 pub use aabb::Aabb;
 pub use bounding_ball::Ball;
@@ -53,6 +54,7 @@ pub use shape::{Core, Shape};
 pub use triangle_mesh::TriangleMesh;
 pub use twin::{Twin, TwinVec3};
 pub use voxels::{Cells, Voxels};
+pub use weighted_corners::{CornerSums, CornerWeights};
 
 /// A point, a direction or a difference of points.
 pub type Vec3 = nalgebra::Vector3<f64>;

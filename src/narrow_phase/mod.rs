@@ -77,9 +77,11 @@ mod wall;
 mod witness;
 
 pub use batch::{PairQuestion, separations};
+pub use derivative::{
+    DerivativeCost, DerivativeGoal, DerivativeMethod, Derivatives, MOST_SAMPLES, NoDerivatives, TwistMatrix,
+};
 #[cfg(feature = "effect-derivatives")]
-pub use derivative::derivatives;
-pub use derivative::{DerivativeCost, DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives, TwistMatrix};
+pub use derivative::{EpsilonSchedule, derivatives};
 pub use fit::{Fit, FitGoal, fit};
 pub use goal::{Accuracy, Depth, Goal};
 pub use impact::{Impact, ImpactGoal, NoImpact, Outcome, Place};

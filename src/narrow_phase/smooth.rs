@@ -83,7 +83,7 @@ fn forms(core: &Core, [u, v]: [Vec3; 2], [pu, pv]: [f64; 2], h: f64) -> [f64; 3]
 /// Two unit vectors that are perpendicular to a unit vector and to one another: without a branch or a root, by Duff and others,
 /// "Building an Orthonormal Basis, Revisited", JCGT 2017.
 #[inline]
-fn tangents(n: Vec3) -> [Vec3; 2] {
+pub(super) fn tangents(n: Vec3) -> [Vec3; 2] {
     let sign = 1.0_f64.copysign(n.z);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;

@@ -149,7 +149,7 @@ mod tests {
                 let call = service.begin_call(Rpc { name: "CheckStates", streams: false }, asker);
                 let question = move |view: &crate::service::View| {
                     std::thread::sleep(length);
-                    let wants = Wants { patch: false, ..Wants::ALL }; // Not every build has it.
+                    let wants = Wants { patch: false, derivatives: false, ..Wants::ALL }; // Not every build has these.
                     let context = Context { wants, margin: 0.5, ..Context::default() };
                     view.check_states(&CheckStates {
                         robot: "nobody".to_owned(),

@@ -2,11 +2,8 @@
 
 use super::answer::Refused;
 use super::request::Context;
-use crate::narrow_phase::{DerivativeGoal, MOST_POINTS};
+use crate::narrow_phase::{DerivativeGoal, MOST_POINTS, MOST_SAMPLES};
 use crate::scene::{Body, BodyId, Snapshot};
-
-/// Samples of a pair at most: each is two or more separations, between which no other work is done.
-pub(super) const MOST_SAMPLES: u32 = 65_536;
 
 /// The filter of a request, checked against the scene.
 pub(super) struct Sieve<'a> {

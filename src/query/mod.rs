@@ -28,6 +28,8 @@ mod no_motions;
 mod opponents;
 mod overlap;
 mod overlay;
+#[cfg(feature = "effect-derivatives")]
+mod pair_derivatives;
 mod pairs;
 mod patch;
 mod rays;

@@ -1,5 +1,6 @@
 //! Which shape is a side of a pair, and where is it? For what is made of pairs after the search for them is over.
 
+#[cfg(feature = "effect-derivatives")]
 use super::answer::Side;
 use super::robot_parts::{Placed, RobotParts};
 use crate::geometry::{Placement, Shape};

@@ -123,7 +123,7 @@ pub(super) fn radius(shape: &Shape) -> f64 {
 }
 
 /// The hull of so many points on an ellipsoid.
-fn hull(corners: usize, random: &mut Random) -> Result<Shape, InvalidShape> {
+pub(super) fn hull(corners: usize, random: &mut Random) -> Result<Shape, InvalidShape> {
     let radii = random.radii();
     let points: Vec<Vec3> = (0..corners).map(|_| random.direction().component_mul(&radii)).collect();
     Shape::convex(&points)

@@ -6,9 +6,13 @@
 //! those of `race`. Drawings are `plot` and `rungs`, in the frame of `scale`; `page` puts the sections into one file that
 //! needs nothing else, `table` writes the numbers beside it.
 
+#[cfg(feature = "effect-derivatives")]
+mod alignment;
 mod batches;
 mod body;
 mod broad;
+#[cfg(feature = "effect-derivatives")]
+mod contact_target;
 mod distance;
 mod double_double;
 mod families;
@@ -38,6 +42,8 @@ mod sweep;
 mod table;
 mod truth;
 
+#[cfg(feature = "effect-derivatives")]
+pub use contact_target::{Attempt, ContactTarget, Course};
 pub use planner::{Planner, PlannerScene};
 pub use section::{Figure, Section};
 pub use study::{Effort, NoStudy, Progress, Study};

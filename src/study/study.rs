@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 use std::{fs, io};
 
+#[cfg(feature = "effect-derivatives")]
+use super::alignment;
 use super::machine::Machine;
 #[cfg(feature = "effect-motion")]
 use super::motion;
@@ -119,6 +121,8 @@ const EXPERIMENTS: &[Experiment] = &[
     ("broad_phase", broad::SHARE, broad::section),
     ("batches", batches::SHARE, batches::section),
     ("lecture", lecture::SHARE, lecture::section),
+    #[cfg(feature = "effect-derivatives")]
+    ("alignment", alignment::SHARE, alignment::section),
 ];
 
 impl Study {

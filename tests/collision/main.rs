@@ -4,8 +4,14 @@
 mod batches;
 mod caches;
 mod closed_forms;
-#[cfg(feature = "effect-patch")]
+#[cfg(feature = "effect-derivatives")]
+mod contested;
+#[cfg(feature = "effect-derivatives")]
+mod derivative_pairs;
+#[cfg(feature = "effect-derivatives")]
 mod derivatives;
+#[cfg(feature = "effect-derivatives")]
+mod differences;
 mod early_outs;
 mod extremes;
 mod fits;
@@ -24,6 +30,10 @@ mod patches;
 mod random_pairs;
 mod rays;
 mod samples;
+#[cfg(feature = "effect-derivatives")]
+mod smoothed_places;
+#[cfg(feature = "effect-derivatives")]
+mod smoothed_supports;
 mod solvers;
 mod soundness;
 mod specimen;

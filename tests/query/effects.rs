@@ -1,6 +1,6 @@
 //! Declared effects and questions. Oracle: the same question to the same scene without declarations, where everything is permitted
 //! and every pair is looked at; which pairs that leaves out is said by hand.
-#![cfg(all(feature = "effect-motion", feature = "effect-patch"))]
+#![cfg(all(feature = "effect-derivatives", feature = "effect-motion", feature = "effect-patch"))]
 
 use std::sync::Arc;
 
@@ -123,6 +123,7 @@ fn each_want_is_refused_by_its_name_where_it_is_not_declared() {
         (Wants { witness: true, ..on(false) }, 0.0, Effect::Witness),
         (Wants { depth: true, ..on(false) }, 0.0, Effect::Depth),
         (Wants { patch: true, ..on(false) }, 0.0, Effect::Patch),
+        (Wants { derivatives: true, ..on(false) }, 0.0, Effect::Derivatives),
         (on(false), 0.1, Effect::Margin),
     ];
     for (wants, margin, effect) in cases {

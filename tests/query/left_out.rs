@@ -1,5 +1,5 @@
 //! A build without the code of an effect refuses what needs it, by name. Oracle: the effect and the field that has to be named.
-#![cfg(not(all(feature = "effect-motion", feature = "effect-patch")))]
+#![cfg(not(all(feature = "effect-derivatives", feature = "effect-motion", feature = "effect-patch")))]
 
 use clearance::query::{Context, Refused};
 use clearance::scene::{Epoch, Scene};
@@ -45,4 +45,16 @@ fn patches_are_refused_by_name() {
     let query = PairQuery { items: Vec::new(), mode: Mode::All, context };
     let refused = Prepared::collide(&*Scene::new(Epoch(1)).snapshot(), &query).err();
     not_built(refused, "context.wants", "patch");
+}
+
+#[cfg(not(feature = "effect-derivatives"))]
+#[test]
+fn derivatives_are_refused_by_name() {
+    use clearance::query::{Mode, NearestBodies, Neighbours, PairQuery, Prepared, Wants};
+    let scene = Scene::new(Epoch(1)).snapshot();
+    let context = Context { wants: Wants { derivatives: true, ..Wants::VERDICT }, ..Context::default() };
+    let query = PairQuery { items: Vec::new(), mode: Mode::All, context: context.clone() };
+    not_built(Prepared::distance(&*scene, &query).err(), "context.wants", "derivatives");
+    let near = NearestBodies { items: Vec::new(), count: 1, context };
+    not_built(Neighbours::new(&scene, &near).err(), "context.wants", "derivatives");
 }

@@ -6,6 +6,7 @@ mod casts;
 mod changed_since;
 mod clearance;
 mod contacts;
+mod derivatives;
 mod edges;
 mod effects;
 mod effects_random;

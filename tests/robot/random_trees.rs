@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use clearance::geometry::{Pose, Quaternion, Vec3};
-use clearance::robot::{JointKind, RobotModel};
+use clearance::robot::{JointKind, LinkGradient, RobotModel};
 use nalgebra::{Matrix3, Matrix4};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -186,5 +186,71 @@ fn urdf_rs_reads_the_same_numbers() {
     for (ours, theirs) in ours.joints().iter().zip(actuated()) {
         let limits = ours.limits.unwrap();
         assert_eq!((limits.lower, limits.upper), (theirs.limit.lower, theirs.limit.upper));
+    }
+}
+
+/// A point that a link holds, in the link's frame.
+type HeldPoint = (u32, Vec3);
+
+fn place_of(poses: &[Pose], (link, point): HeldPoint) -> Vec3 {
+    poses[link as usize].placement().point(point)
+}
+
+/// Of the height of a held point along a fixed direction: the point moves like the link, and about its origin.
+fn gradient_of_height(poses: &[Pose], held: HeldPoint, along: Vec3) -> LinkGradient {
+    let turning = (place_of(poses, held) - poses[held.0 as usize].translation()).cross(&along);
+    LinkGradient { link: held.0, twist: [along.x, along.y, along.z, turning.x, turning.y, turning.z] }
+}
+
+proptest! {
+    /// Reference: central differences of forward kinematics, in every number of the vector: floating joints, slides, mimics of mimics. The distance
+    /// of two points that two links hold, and the height of one of them.
+    #[test]
+    fn joint_gradients_agree_with_differences(
+        joints in trees(),
+        turn in prop::array::uniform3(-3.0..3.0f64),
+        points in prop::array::uniform2(prop::array::uniform3(-2.0..2.0f64)),
+        chosen in prop::array::uniform2(any::<prop::sample::Index>()),
+    ) {
+        let model = model(&urdf(&joints), None).unwrap();
+        let positions = positions(&joints, &model);
+        let base = Pose::new(Vec3::from(turn), Quaternion::from_roll_pitch_yaw(turn[1], turn[2], turn[0])).unwrap();
+        let [one, two] = [0, 1].map(|i| (chosen[i].index(joints.len() + 1) as u32, Vec3::from(points[i])));
+        let poses_at = |positions: &[f64]| {
+            let mut poses = Vec::new();
+            model.link_poses(positions, &base, &mut poses);
+            poses
+        };
+        let up = Vec3::new(0.6, 0.0, -0.8);
+        let distance = |poses: &[Pose]| (place_of(poses, two) - place_of(poses, one)).norm();
+        let height = |poses: &[Pose]| place_of(poses, one).dot(&up);
+        let poses = poses_at(&positions);
+        prop_assume!(distance(&poses) > 0.3);
+        let normal = (place_of(&poses, two) - place_of(&poses, one)).normalize();
+        let apart = [gradient_of_height(&poses, one, -normal), gradient_of_height(&poses, two, normal)];
+        let of_distance = model.joint_gradient(&positions, &poses, &apart[0], Some(&apart[1]));
+        let of_height = model.joint_gradient(&positions, &poses, &gradient_of_height(&poses, one, up), None);
+        prop_assert_eq!(model.joint_gradient(&positions, &poses, &apart[1], Some(&apart[0])), &*of_distance);
+        if one.0 == two.0 {
+            prop_assert!(of_distance.iter().all(|g| *g == 0.0), "one body");
+        }
+        // A short quaternion turns most, and differences see how that bends.
+        let norm = |first: usize| positions[first + 3..first + 7].iter().map(|c| c * c).sum::<f64>().sqrt();
+        let floating = model.joints().iter().filter(|joint| joint.kind == JointKind::Floating);
+        let short = floating.map(|joint| norm(joint.first)).fold(1.0, f64::min);
+        let reach = 1.0 + 16.0 * joints.len() as f64;
+        let (step, tolerance) = (1e-5 * short, 1e-8 * reach * reach / short);
+        for i in 0..positions.len() {
+            let beside = [-step, step].map(|by| {
+                let mut there = positions.clone();
+                there[i] += by;
+                poses_at(&there)
+            });
+            for (number, gradient) in [(&distance as &dyn Fn(&[Pose]) -> f64, &of_distance), (&height, &of_height)] {
+                let difference = (number(&beside[1]) - number(&beside[0])) / (2.0 * step);
+                let error = (gradient[i] - difference).abs();
+                prop_assert!(error <= tolerance, "{}: {} and not {}", i, gradient[i], difference);
+            }
+        }
     }
 }

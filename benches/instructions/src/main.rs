@@ -47,7 +47,7 @@ fn kernels() -> Vec<(String, fn() -> Kernel)> {
     add("depth, hull 940", || ask(Depth::Penetration, pairs(CALLS, Lie::Overlapping, |r| Shape::hull(hull(r, 940)))));
     add("question, verdicts", || question(Wants::VERDICT));
     add("question, distances", || question(Wants { distance: true, ..Wants::VERDICT }));
-    add("question, witnesses and depths", || question(Wants { patch: false, ..Wants::ALL }));
+    add("question, witnesses and depths", || question(Wants { patch: false, derivatives: false, ..Wants::ALL }));
     add("question, nearest bodies", nearest_bodies);
     add("question, rays", rays);
     add("distance apart, mesh 800", || ask(Depth::Distance, pairs(MESHES, Lie::Apart, |r| mesh(r, 20, 21))));

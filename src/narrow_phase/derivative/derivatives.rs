@@ -5,6 +5,7 @@ use std::ops::AddAssign;
 use nalgebra::SMatrix;
 
 use super::super::patch::NoPatch;
+use super::super::separation::NoSeparation;
 
 /// A change per twist of a body: three rows of a vector. Columns: velocity of the body along x, y, z (metres), then its turn about x, y, z
 /// (radians), about its own origin, in the axes of both placements.
@@ -41,7 +42,7 @@ pub struct DerivativeGoal {
     pub method: DerivativeMethod,
     /// How far smoothing reaches, as a part of the size of what is smoothed: order zero moves bodies by so much of the smaller one's radius, and
     /// turns them by as many radians; Gaussian noise turns directions by so many radians; Gumbel noise on heights is so much of the radius of
-    /// each piece. Finite, not negative; zero: chosen from the pair. The answer has what was used.
+    /// each piece's core. A radius is half the longest side of the box in the shape's own frame. Finite, not negative; zero: chosen from the pair. The answer has what was used.
     pub epsilon: f64,
     /// Pairs of samples (there and back) of random methods, at least one.
     pub samples: u32,
@@ -54,6 +55,29 @@ pub struct DerivativeGoal {
 impl Default for DerivativeGoal {
     fn default() -> Self {
         Self { method: DerivativeMethod::Exact, epsilon: 0.0, samples: 64, seed: 0, stream: 0 }
+    }
+}
+
+/// Pairs of samples at most: the standard error falls with their square root, and more are as many questions as a batch has.
+pub const MOST_SAMPLES: u32 = 1 << 16;
+
+impl DerivativeGoal {
+    /// Whether what the method uses makes sense: no samples are no matter to a formula.
+    ///
+    /// # Errors
+    /// [`NoDerivatives::Goal`], naming the field.
+    pub fn check(&self) -> Result<(), NoDerivatives> {
+        match self.method {
+            DerivativeMethod::Exact | DerivativeMethod::ExactCell | DerivativeMethod::FiniteDifference => return Ok(()),
+            DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian | DerivativeMethod::Smoothed1Gumbel => {}
+        }
+        if !(self.epsilon.is_finite() && self.epsilon >= 0.0) {
+            return Err(NoDerivatives::Goal { field: "epsilon", reason: "is not a finite number from zero up" });
+        }
+        if !(1..=MOST_SAMPLES).contains(&self.samples) {
+            return Err(NoDerivatives::Goal { field: "samples", reason: "is not from 1 to 65536" });
+        }
+        Ok(())
     }
 }
 
@@ -94,10 +118,13 @@ pub struct Derivatives {
     /// least depth is along another normal. Not known (NaN) of differences and of order zero.
     pub conditioning: f64,
     /// What is wrong at most with the derivatives' own equation, metres: exact methods: how far the vector between the witnesses is off the normal, of
-    /// smooth pairs after Newton's method; by conditioning that is the error of the normal. Differences: step to the second by the size, plus the
-    /// error of a separation by the step (without unit). Random methods: the standard error of the largest entry that is random.
+    /// smooth pairs after Newton's method; by conditioning that is the error of the normal. Differences: the step's square plus the error of a
+    /// separation by the step, both as parts of the size (without unit). Order zero: the largest standard error of an entry. Order one: the same of
+    /// the smoothed Hessians, or how far they are off at most because of corners that were left out, metres; by conditioning it is the
+    /// relative error of a change of the normal. Infinite: one pair of samples does not tell.
     pub residual: f64,
-    /// What was used; zero where nothing is smoothed. Of differences: the step, metres and radians.
+    /// What was used; zero where nothing is smoothed. Of differences: the step, as a part of the smaller piece's size (half the longest side of
+    /// its box), and radians; fewer of them about an origin that is farther from the witness than that.
     pub epsilon: f64,
     /// Pairs of samples that were used; zero where nothing is random.
     pub samples: u32,
@@ -119,6 +146,17 @@ pub enum NoDerivatives {
     /// As with contact patches: two walls, or no one convex piece.
     #[error("no derivatives: {0}")]
     Piece(#[from] NoPatch),
+    /// A number of the goal makes no sense.
+    #[error("no derivatives: {field} {reason}")]
+    Goal {
+        /// Its name.
+        field: &'static str,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// In moved places the pair cannot be asked: the solver that is to do it does not take the shapes.
+    #[error("no derivatives: {0}")]
+    Separation(#[from] NoSeparation),
     /// The caller's time ran out.
     #[error("no derivatives: the caller's time ran out")]
     Stopped,

@@ -3,8 +3,11 @@
 use super::super::goal::Goal;
 use super::super::outcome::Separation;
 use super::derivatives::{DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives};
+use super::differences::differences;
 use super::exact::exact;
 use super::runner_up::is_contested;
+use super::smoothed_places::smoothed_places;
+use super::smoothed_supports::smoothed_supports;
 use crate::geometry::{Placement, Shape};
 
 /// The derivatives of what `found` says of two shapes in these places.
@@ -24,14 +27,16 @@ pub fn derivatives(
     goal: &DerivativeGoal,
     again: &Goal,
 ) -> Result<Derivatives, NoDerivatives> {
+    goal.check()?;
     let pair = [(a, at_a), (b, at_b)];
     let mut made = match goal.method {
         DerivativeMethod::Exact => exact(pair, found, true),
         DerivativeMethod::ExactCell => exact(pair, found, false),
-        DerivativeMethod::FiniteDifference
-        | DerivativeMethod::Smoothed0
-        | DerivativeMethod::Smoothed1Gaussian
-        | DerivativeMethod::Smoothed1Gumbel => Err(NoDerivatives::Stopped).inspect_err(|_| _ = again.margin),
+        DerivativeMethod::FiniteDifference => differences(pair, found, again),
+        DerivativeMethod::Smoothed0 => smoothed_places(pair, found, goal, again),
+        DerivativeMethod::Smoothed1Gaussian | DerivativeMethod::Smoothed1Gumbel => {
+            smoothed_supports(pair, found, goal, again)
+        }
     }?;
     made.is_contested = is_contested(pair, found, again, &mut made.cost)?;
     Ok(made)

@@ -22,40 +22,57 @@
 //! every feature.)
 
 use arrayvec::ArrayVec;
+use nalgebra::SMatrix;
 
+use super::derivatives::{Derivatives, TwistMatrix};
 use super::side::{Mat2, Side, Vec2};
 use crate::geometry::Vec3;
 
 /// Flat directions of two sides that are nearer to parallel than this (sine) are one.
 const PARALLEL: f64 = 1e-7;
 
+/// In the plane across the normal, for each of six twists of a body.
+type Plane = SMatrix<f64, 2, 6>;
+
 /// Both sides at the witness, in the frame of both placements.
 pub(super) struct Response {
     normal: Vec3,
     /// Two axes across the normal.
     axes: [Vec3; 2],
-    /// What is flat on A, then on B; at most two, and not parallel.
-    flat: ArrayVec<(Vec2, usize), 2>,
     radii: [Mat2; 2],
-    bend: Mat2,
     /// M restricted to what is not flat, inverted.
     inverse: Mat2,
+    flat: Option<Flat>,
     /// Of M where it matters, metres; infinite where nothing can bend.
     pub least_eigenvalue: f64,
     /// A direction is flat on both sides: there is no one witness.
     pub is_shared: bool,
 }
 
-/// What a twist does.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Change {
-    pub distance: f64,
-    pub normal: Vec3,
-    pub points: [Vec3; 2],
+/// What flat directions do to the solution.
+struct Flat {
+    /// M.
+    bend: Mat2,
+    /// The change of the normal when one side's flat directions turn by (wx, wy) with their body: by body.
+    turn: [Mat2; 2],
+    /// The slides of A and of B that make up for what is left of the equation.
+    slide: [Mat2; 2],
 }
 
 impl Response {
+    /// Without flat directions.
+    pub fn smooth(normal: Vec3, axes: [Vec3; 2], signed_distance: f64, radii: [Mat2; 2]) -> Self {
+        let bend = Mat2::identity() * signed_distance + radii[0] + radii[1];
+        let (inverse, least_eigenvalue) = (inverted(&bend), least_eigenvalue(&bend));
+        Self { normal, axes, radii, inverse, flat: None, least_eigenvalue, is_shared: false }
+    }
+
     pub fn new(normal: Vec3, axes: [Vec3; 2], signed_distance: f64, [a, b]: [&Side; 2]) -> Self {
+        let smooth = Self::smooth(normal, axes, signed_distance, [a.radii, b.radii]);
+        if a.flat.is_empty() && b.flat.is_empty() {
+            return smooth;
+        }
+        let bend = Mat2::identity() * signed_distance + a.radii + b.radii;
         let mut flat: ArrayVec<(Vec2, usize), 2> = a.flat.iter().map(|along| (*along, 0)).collect();
         let mut is_shared = false;
         for along in &b.flat {
@@ -69,84 +86,103 @@ impl Response {
             }
             is_shared |= !is_new;
         }
-        let radii = [a.radii, b.radii];
-        let bend = Mat2::identity() * signed_distance + a.radii + b.radii;
-        let (inverse, least_eigenvalue) = match flat[..] {
-            [] => {
-                let least = least_eigenvalue(&bend);
-                (bend.try_inverse().unwrap_or_else(Mat2::zeros), least)
-            }
-            [(along, _)] => {
-                let across = Vec2::new(-along.y, along.x);
-                let bends = across.dot(&(bend * across));
-                (across * across.transpose() / bends, bends)
-            }
-            _ => (Mat2::zeros(), f64::INFINITY),
-        };
-        Self { normal, axes, flat, radii, bend, inverse, least_eigenvalue, is_shared }
-    }
-
-    fn across(&self, v: Vec3) -> Vec2 {
-        Vec2::new(self.axes[0].dot(&v), self.axes[1].dot(&v))
-    }
-
-    fn whole(&self, v: Vec2) -> Vec3 {
-        self.axes[0] * v.x + self.axes[1] * v.y
-    }
-
-    /// The twist (`v`, `w`) of one body (0: A, 1: B) about its origin, from which its witness is at `arm`.
-    pub fn change(&self, body: usize, v: Vec3, w: Vec3, arm: Vec3) -> Change {
-        let moved = v + w.cross(&arm);
-        let sign = if body == 0 { -1.0 } else { 1.0 };
-        let turned = self.across(w.cross(&self.normal));
-        let turned_by = |side: usize| if side == body { turned } else { Vec2::zeros() };
-        let asked = self.across(moved) * sign + self.radii[body] * turned;
-        let along_flat = self.along_flat(turned_by);
-        let dn = along_flat + self.inverse * (asked - self.bend * along_flat);
-        // What the slides have to make up for: sB - sA.
-        let [slide_a, slide_b] = self.slides(self.bend * dn - asked);
-        let of_side = |side: usize| self.radii[side] * (dn - turned_by(side));
-        let moved_if = |side: usize| if side == body { moved } else { Vec3::zeros() };
-        Change {
-            distance: sign * self.normal.dot(&moved),
-            normal: self.whole(dn),
-            points: [moved_if(0) + self.whole(of_side(0) + slide_a), moved_if(1) + self.whole(slide_b - of_side(1))],
-        }
-    }
-
-    /// The part of dn in the span of what is flat: each flat direction turns with its body.
-    fn along_flat(&self, turned_by: impl Fn(usize) -> Vec2) -> Vec2 {
-        let told = |(along, side): (Vec2, usize)| along.dot(&turned_by(side));
-        match self.flat[..] {
-            [one] => one.0 * told(one),
-            [one, other] => {
-                let both = Mat2::from_rows(&[one.0.transpose(), other.0.transpose()]);
-                both.try_inverse().unwrap_or_else(Mat2::zeros) * Vec2::new(told(one), told(other))
-            }
-            _ => Vec2::zeros(),
-        }
-    }
-
-    /// `sB - sA = rest`, each along what is flat on its side.
-    fn slides(&self, rest: Vec2) -> [Vec2; 2] {
-        let mut slides = [Vec2::zeros(); 2];
+        let (mut turn, mut slide) = ([Mat2::zeros(); 2], [Mat2::zeros(); 2]);
+        // sB - sA is what is left: a slide of A is its opposite.
         let signed = |side: usize| if side == 0 { -1.0 } else { 1.0 };
-        match self.flat[..] {
-            [(along, side)] => slides[side] = along * (along.dot(&rest) * signed(side)),
-            [(one, its), (other, others)] => {
-                let both = Mat2::from_columns(&[one, other]);
-                let parts = both.try_inverse().unwrap_or_else(Mat2::zeros) * rest;
-                slides[its] += one * (parts.x * signed(its));
-                slides[others] += other * (parts.y * signed(others));
-            }
-            _ => {}
+        let (inverse, least_eigenvalue) = if let [(along, side)] = flat[..] {
+            let across = Vec2::new(-along.y, along.x);
+            let bends = across.dot(&(bend * across));
+            let inverse = across * across.transpose() / bends;
+            let project = along * along.transpose();
+            turn[side] = project - inverse * bend * project;
+            slide[side] = project * signed(side);
+            (inverse, bends)
+        } else {
+            // Both are held: the dual of the two directions tells the normal, the directions themselves the slides.
+            let [(one, its), (other, others)] = [flat[0], flat[1]];
+            let dual = inverted(&Mat2::from_rows(&[one.transpose(), other.transpose()]));
+            turn[its] += dual.column(0) * one.transpose();
+            turn[others] += dual.column(1) * other.transpose();
+            let parts = inverted(&Mat2::from_columns(&[one, other]));
+            slide[its] += one * parts.row(0) * signed(its);
+            slide[others] += other * parts.row(1) * signed(others);
+            (Mat2::zeros(), f64::INFINITY)
+        };
+        Self { inverse, flat: Some(Flat { bend, turn, slide }), least_eigenvalue, is_shared, ..smooth }
+    }
+
+    /// Writes what follows for all twists, and how well it is conditioned. `arms`: from the origin of each body to its witness.
+    #[inline]
+    pub fn tell(&self, arms: [Vec3; 2], all: &mut Derivatives) {
+        for (body, arm) in arms.into_iter().enumerate() {
+            self.fill_body(body, arm, all);
         }
-        slides
+        all.conditioning = self.least_eigenvalue;
+        all.is_valid = !self.is_shared && self.least_eigenvalue > 0.0;
+    }
+
+    /// Those with respect to one body's twists about its origin.
+    fn fill_body(&self, body: usize, arm: Vec3, all: &mut Derivatives) {
+        let [x, y] = self.axes;
+        let (radii, sign) = (&self.radii[body], if body == 0 { -1.0 } else { 1.0 });
+        // e . (v + w x r) = e . v + (r x e) . w: the witness moves so along an axis e.
+        let along = |axis: Vec3| [axis, arm.cross(&axis)];
+        let moved = rows(along(x), along(y));
+        // e . (w x n) = (n x e) . w, and n x x = y, n x y = -x.
+        let turned = rows([Vec3::zeros(), y], [Vec3::zeros(), -x]);
+        let bent = radii * turned;
+        let asked = moved * sign + bent;
+        let mut dn = self.inverse * asked;
+        let (mut on_a, mut on_b);
+        if let Some(Flat { bend, turn, slide }) = &self.flat {
+            dn += turn[body] * turned;
+            let rest = bend * dn - asked;
+            (on_a, on_b) = (self.radii[0] * dn + slide[0] * rest, slide[1] * rest - self.radii[1] * dn);
+        } else {
+            (on_a, on_b) = (self.radii[0] * dn, -(self.radii[1] * dn));
+        }
+        if body == 0 {
+            on_a += moved - bent;
+        } else {
+            on_b += moved + bent;
+        }
+        let outward = along(self.normal);
+        let distance = [outward[0] * sign, outward[1] * sign];
+        all.signed_distance[body] = std::array::from_fn(|k| distance[k / 3][k % 3]);
+        let none = [Vec3::zeros(); 2];
+        self.whole(&dn, none, &mut all.normal[body]);
+        self.whole(&on_a, if body == 0 { outward } else { none }, &mut all.point_on_a[body]);
+        self.whole(&on_b, if body == 0 { none } else { outward }, &mut all.point_on_b[body]);
+    }
+
+    /// In the frame of both placements: what is in the plane, and what is along the normal.
+    #[inline]
+    fn whole(&self, plane: &Plane, along: [Vec3; 2], into: &mut TwistMatrix) {
+        let ([x, y], n) = (self.axes, self.normal);
+        for k in 0..6 {
+            let (u, v, w) = (plane[(0, k)], plane[(1, k)], along[k / 3][k % 3]);
+            for row in 0..3 {
+                into[(row, k)] = x[row] * u + y[row] * v + n[row] * w;
+            }
+        }
     }
 }
 
+#[inline]
+fn rows([vx, wx]: [Vec3; 2], [vy, wy]: [Vec3; 2]) -> Plane {
+    Plane::new(vx.x, vx.y, vx.z, wx.x, wx.y, wx.z, vy.x, vy.y, vy.z, wy.x, wy.y, wy.z)
+}
+
+/// Zero where there is none: then the least eigenvalue says so.
+#[inline]
+fn inverted(m: &Mat2) -> Mat2 {
+    let determinant = m.m11 * m.m22 - m.m12 * m.m21;
+    if determinant == 0.0 { Mat2::zeros() } else { Mat2::new(m.m22, -m.m12, -m.m21, m.m11) / determinant }
+}
+
 /// Of a symmetric matrix.
+#[inline]
 fn least_eigenvalue(m: &Mat2) -> f64 {
     let (middle, half) = ((m.m11 + m.m22) / 2.0, (m.m11 - m.m22) / 2.0);
-    middle - libm::hypot(half, m.m12)
+    middle - (half * half + m.m12 * m.m12).sqrt()
 }

@@ -16,8 +16,17 @@ pub(super) type Vec2 = nalgebra::Vector2<f64>;
 /// A tensor there.
 pub(super) type Mat2 = nalgebra::Matrix2<f64>;
 
-/// Directions that are turned by less than this are one: tangent of the angle.
-const TILT: f64 = 1e-9;
+/// Directions that are turned by less than this are one; radians. An edge that is this near to level is an edge between two cells whichever
+/// way it is looked at, and normals of overlaps are about so exact.
+const TILT: f64 = 1e-7;
+
+/// However little is known of a normal.
+const WIDEST_TILT: f64 = 1e-5;
+
+/// How far a normal may be turned from that of a feature which holds it.
+pub(super) fn tilt(normal_error: f64) -> f64 {
+    if normal_error < 1.0 { TILT.max(4.0 * normal_error).min(WIDEST_TILT) } else { TILT }
+}
 
 /// Roundings of the largest length of a side within which corners are as high as one another.
 const SLACK_ULPS: f64 = 64.0;
@@ -33,17 +42,15 @@ pub(super) struct Side {
     pub radii: Mat2,
     /// Whether the witness is where two features meet, so that a move may lead to either.
     pub on_border: bool,
-    /// Smooth and strictly convex, so that no move leaves the feature.
-    pub is_smooth: bool,
 }
 
 impl Side {
     /// `axes`: x and y of the plane and the direction towards the other shape, in the axes of both placements. The piece is placed
-    /// from its own witness point.
-    pub fn of(piece: &TouchingPiece, axes: [Vec3; 3]) -> Self {
+    /// from its own witness point; `tilt`: how far the normal may be off.
+    pub fn of(piece: &TouchingPiece, axes: [Vec3; 3], tilt: f64) -> Self {
         let swept = Mat2::identity() * piece.swept_radius;
         if is_wall(&piece.core) {
-            return Self { flat: whole_plane(), radii: Mat2::zeros(), on_border: false, is_smooth: false };
+            return Self { flat: whole_plane(), radii: Mat2::zeros(), on_border: false };
         }
         let in_core = axes.map(|axis| piece.rotation.tr_mul(&axis));
         // From the core's origin to the witness on the core itself, in its axes.
@@ -52,20 +59,20 @@ impl Side {
             && radii.min() > 0.0
         {
             let radii = ellipsoid(radii, in_core) + swept;
-            return Self { flat: ArrayVec::new(), radii, on_border: false, is_smooth: true };
+            return Self { flat: ArrayVec::new(), radii, on_border: false };
         }
         if matches!(*piece.core, Core::Point) {
-            return Self { flat: ArrayVec::new(), radii: swept, on_border: false, is_smooth: true };
+            return Self { flat: ArrayVec::new(), radii: swept, on_border: false };
         }
         let extent = length(piece.position) + piece.swept_radius;
         let slack = SLACK_ULPS * UNIT_ROUNDOFF * extent;
-        let view = View::new(&piece.rotation, piece.position, axes, piece.swept_radius, 1.0).within(TILT, slack);
+        let view = View::new(&piece.rotation, piece.position, axes, piece.swept_radius, 1.0).within(tilt, slack);
         let face = face(&piece.core, &view, &mut PatchCost::default());
         let flat = flat_of(&face, slack);
         let round = round(&piece.core, in_core, at, flat.len());
         let radii = without(round + swept, &flat);
         let on_border = !face.complete || is_at_end(&face, flat.len(), slack);
-        Self { flat, radii, on_border, is_smooth: false }
+        Self { flat, radii, on_border }
     }
 }
 

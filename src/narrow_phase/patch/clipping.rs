@@ -7,9 +7,11 @@ use super::super::convex::scale_of;
 use super::super::outcome::Separation;
 use super::super::support::radius;
 use super::super::witness::WITNESS_ERROR_ULPS;
+use super::common_region::{common, cut};
 use super::contact_patch::{ContactPatch, ContactPoint, MOST_POINTS, NoPatch, PatchCost, PatchGoal};
-use super::face::{Face, View, across, face};
-use super::flat_region::{Flat, common, cut};
+use super::face::{View, across, face};
+use super::face_height::Relief;
+use super::flat_region::Flat;
 use super::reduction::{Place, Places, reduce};
 use super::touching_piece::{TouchingPiece, is_wall};
 use crate::geometry::tolerance::{SUPPORT_ERROR_ULPS, UNIT_ROUNDOFF, UNSCALED_EXTENT};
@@ -81,7 +83,7 @@ pub fn contact_patch(
 
 /// What of one shape faces the other.
 enum Facing {
-    Face(Face),
+    Face(Relief),
     /// All of a plane, at that height over the witness, towards the other shape; metres (scaled).
     Wall(f64),
 }
@@ -134,16 +136,16 @@ impl Between {
             extents.map(|extent| UNIT_ROUNDOFF * SUPPORT_ERROR_ULPS * extent * scale + 64.0 * f64::MIN_POSITIVE);
         let mut facing = |piece: &TouchingPiece, up: Vec3, slack: f64| {
             let view = View::new(&piece.rotation, piece.position, [x, y, up], piece.swept_radius, scale);
-            face(&piece.core, &view.within(tangent, slack), cost)
+            Relief::of(face(&piece.core, &view.within(tangent, slack), cost), slack)
         };
         let signed_distance = found.signed_distance * scale;
         let faces = [
             (!walls[0]).then(|| facing(a, normal, slacks[0])),
             (!walls[1]).then(|| facing(b, opposite(normal), slacks[1])),
         ];
-        let complete = faces.iter().flatten().all(|face| face.complete);
+        let complete = faces.iter().flatten().all(|relief| relief.face.complete);
         // A wall is as far from the highest point of the other as the witness tells.
-        let tops = faces.each_ref().map(|face| face.as_ref().map_or(0.0, |face| face.top.height));
+        let tops = faces.each_ref().map(|relief| relief.as_ref().map_or(0.0, |relief| relief.face.top.height));
         let wall = Facing::Wall(-(tops[0] + tops[1] + signed_distance));
         let fine_slack = match faces {
             [Some(_), Some(_)] => slacks[0].min(slacks[1]),
@@ -170,11 +172,11 @@ impl Between {
     fn common(&self, cost: &mut PatchCost) -> Places {
         match (&self.a, &self.b) {
             (Facing::Face(a), Facing::Face(b)) => {
-                let both = common(&a.outline, &b.outline, self.tangent, self.slack, &mut cost.cuts);
+                let both = common(&a.face.outline, &b.face.outline, self.tangent, self.slack, &mut cost.cuts);
                 both.into_iter().map(|at| self.place(at)).collect()
             }
-            (Facing::Face(face), Facing::Wall(_)) | (Facing::Wall(_), Facing::Face(face)) => {
-                face.outline.iter().map(|corner| self.place(corner.at)).collect()
+            (Facing::Face(relief), Facing::Wall(_)) | (Facing::Wall(_), Facing::Face(relief)) => {
+                relief.face.outline.iter().map(|corner| self.place(corner.at)).collect()
             }
             (Facing::Wall(_), Facing::Wall(_)) => Places::new(),
         }

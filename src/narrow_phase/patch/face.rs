@@ -10,7 +10,6 @@ use arrayvec::ArrayVec;
 
 use super::super::support::corner;
 use super::contact_patch::PatchCost;
-use super::face_height::{Plane, height};
 use super::flat_region::{Corner, Corners, Flat, MOST_CORNERS, holds, hull};
 use super::round_face::round_face;
 use crate::geometry::{ConvexHull, Core, Mat3, Vec3};
@@ -24,27 +23,13 @@ pub(in super::super) struct Face {
     /// Of a convex polygon, counter-clockwise; two or one for an edge or a corner.
     pub outline: Corners,
     /// All of its corners, also those within the outline.
+    #[cfg_attr(not(feature = "effect-patch"), expect(dead_code, reason = "only patches ask how high a face is"))]
     pub corners: Corners,
-    /// What they all lie on, if they do.
-    pub plane: Option<Plane>,
     /// The highest point.
+    #[cfg_attr(not(feature = "effect-patch"), expect(dead_code, reason = "only patches ask how high a face is"))]
     pub top: Corner,
     /// Whether no corner was left out for want of room.
     pub complete: bool,
-}
-
-impl Face {
-    pub fn new(corners: Corners, outline: Corners, top: Corner, complete: bool, slack: f64) -> Self {
-        Self { plane: Plane::through(&outline, &corners, slack), corners, outline, top, complete }
-    }
-
-    /// Height at a place within the outline.
-    pub fn height(&self, at: Flat, slack: f64) -> f64 {
-        match &self.plane {
-            Some(plane) => plane.height(at),
-            None => height(&self.outline, &self.corners, at, slack),
-        }
-    }
 }
 
 /// How a core is seen along the normal.
@@ -195,7 +180,7 @@ fn widest(points: &[Vec3], top: Corner, view: &View) -> Face {
 fn spanned(corners: Corners, top: Corner, complete: bool, view: &View) -> Face {
     let facing: Corners = corners.iter().filter(|corner| faces(corner, &corners, view)).copied().collect();
     let outline = hull(&facing, view.slack);
-    Face::new(facing, outline, top, complete, view.slack)
+    Face { outline, corners: facing, top, complete }
 }
 
 /// Whether `v` is farthest of all in a direction that is turned by no more than the tilt.

@@ -1,10 +1,31 @@
 //! How high a face is between its corners.
 
+use super::face::Face;
 use super::flat_region::{Corner, Flat, MOST_CORNERS};
+
+/// A face with the plane that all its corners lie on, if they do.
+pub(super) struct Relief {
+    pub face: Face,
+    plane: Option<Plane>,
+}
+
+impl Relief {
+    pub fn of(face: Face, slack: f64) -> Self {
+        Self { plane: Plane::through(&face.outline, &face.corners, slack), face }
+    }
+
+    /// Height at a place within the outline.
+    pub fn height(&self, at: Flat, slack: f64) -> f64 {
+        match &self.plane {
+            Some(plane) => plane.height(at),
+            None => height(&self.face.outline, &self.face.corners, at, slack),
+        }
+    }
+}
 
 /// A plane over the plane across the normal.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Plane {
+struct Plane {
     through: Corner,
     /// How it rises along either axis.
     rise: Flat,
@@ -12,7 +33,7 @@ pub(in super::super) struct Plane {
 
 impl Plane {
     /// Through all corners of a face, if they lie on one.
-    pub fn through(outline: &[Corner], all: &[Corner], slack: f64) -> Option<Self> {
+    fn through(outline: &[Corner], all: &[Corner], slack: f64) -> Option<Self> {
         let count = outline.len();
         if count < 3 {
             return None;
@@ -25,7 +46,7 @@ impl Plane {
         all.iter().all(|corner| (corner.height - plane.height(corner.at)).abs() <= slack).then_some(plane)
     }
 
-    pub fn height(&self, at: Flat) -> f64 {
+    fn height(&self, at: Flat) -> f64 {
         self.through.height + self.rise.dot(self.through.at.to(at))
     }
 }
@@ -33,7 +54,7 @@ impl Plane {
 /// Height at a place of the hull of some corners, of which those of `outline` bound it; what is outside of it has the height of a place near by.
 ///
 /// It is the height of the triangle over the place that no corner is above: found as in the simplex method, from a triangle of the outline on.
-pub(super) fn height(outline: &[Corner], all: &[Corner], at: Flat, slack: f64) -> f64 {
+fn height(outline: &[Corner], all: &[Corner], at: Flat, slack: f64) -> f64 {
     match outline {
         [] => 0.0,
         [only] => only.height,

@@ -2,14 +2,16 @@
 //!
 //! [`contact_patch`] is the door; `docs/derivations/patch.md` says what is promised. `contact_patch` has what is asked and answered,
 //! `touching_piece` finds the convex pieces that a separation names, `face` (and `round_face`) what of a piece faces the other, `flat_region`
-//! is the geometry in the plane across the normal, `face_height` that above it, `reduction` chooses a few of many corners, and `clipping` puts them together.
+//! and `common_region` are the geometry in the plane across the normal, `face_height` that above it, `reduction` chooses a few of many corners, and `clipping` puts them together.
 
 #[cfg(feature = "effect-patch")]
 mod clipping;
+#[cfg(feature = "effect-patch")]
+mod common_region;
 mod contact_patch;
 #[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod face;
-#[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
+#[cfg(feature = "effect-patch")]
 mod face_height;
 #[cfg(any(feature = "effect-patch", feature = "effect-derivatives"))]
 mod flat_region;

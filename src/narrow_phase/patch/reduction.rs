@@ -2,7 +2,8 @@
 
 use arrayvec::ArrayVec;
 
-use super::flat_region::{Flat, ROOM};
+use super::common_region::ROOM;
+use super::flat_region::Flat;
 
 /// A corner of what two faces have in common. Metres.
 #[derive(Clone, Copy, Debug)]

@@ -53,7 +53,7 @@ pub(super) fn round_face(core: &Core, view: &View, cost: &mut PatchCost) -> Face
     let (mut corners, top) = (points.into_iter().map(|p| view.corner(p)).collect::<Corners>(), view.corner(top));
     let outline = hull(&corners, view.slack);
     corners.push(top);
-    Face::new(corners, outline, top, true, view.slack)
+    Face { outline, corners, top, complete: true }
 }
 
 /// Base, side or apex of a cone.

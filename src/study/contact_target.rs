@@ -1,0 +1,204 @@
+//! Where should two bodies touch, and how does one of them get there?
+//!
+//! The lecture's example of what derivatives of collision detection are for: with A held fast, B's place T is moved until the nearest points x1,
+//! x2 are where they are wanted on both bodies, and one in the other,
+//!
+//! ```text
+//! min over T of  |x1(T) - t1|^2 + |x2(T) - T t2|^2 + |x1(T) - x2(T)|^2,
+//! ```
+//!
+//! t1 in the world, t2 in B's frame. Steps are Levenberg's and Marquardt's, on twists of B about its own origin, turns scaled by its size so
+//! that all six are metres.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::families::placed;
+use super::random::Random;
+use crate::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
+use crate::narrow_phase::{
+    DerivativeGoal, DerivativeMethod, Derivatives, EpsilonSchedule, Goal, Separation, derivatives, separation,
+};
+
+/// Damping at the start, and beyond which no step is left that helps; parts of the largest diagonal entry.
+const DAMPING: f64 = 1e-3;
+const MOST_DAMPING: f64 = 1e9;
+
+/// A step's length at most, parts of the size.
+const LONGEST_STEP: f64 = 0.5;
+
+/// Reached: every residual is below this part of the size.
+pub(super) const REACHED: f64 = 1e-3;
+
+/// Two bodies, and where they should touch.
+#[derive(Clone, Debug)]
+pub struct ContactTarget {
+    /// The one that stays.
+    pub a: Shape,
+    /// The one that is moved.
+    pub b: Shape,
+    /// Where A is.
+    pub at_a: Placement,
+    /// Where the nearest point of A should be, in the world; metres.
+    pub on_a: Vec3,
+    /// Where that of B should be, in B's frame; metres.
+    pub on_b: Vec3,
+    /// Of the smaller body, metres.
+    pub size: f64,
+}
+
+/// How an attempt is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Attempt {
+    /// How derivatives are made.
+    pub method: DerivativeMethod,
+    /// Pairs of samples of random methods.
+    pub samples: u32,
+    /// Separations at most, those that derivatives ask again among them.
+    pub budget: u64,
+    /// Of random methods.
+    pub seed: u64,
+}
+
+/// How an attempt ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// Every residual is below a thousandth of the size.
+    pub reached: bool,
+    /// Steps that were taken.
+    pub steps: u64,
+    /// Separations that were asked.
+    pub queries: u64,
+    /// The root of the cost at the end, parts of the size.
+    pub left: f64,
+}
+
+/// A place of B, and what is wrong with it.
+struct State {
+    pose: Pose,
+    at_b: Placement,
+    found: Separation,
+    residuals: SVector<f64, 9>,
+}
+
+impl ContactTarget {
+    /// A target that can be reached: the witness where B, on its way from `at_b` towards A, touches it. None where that is no single point.
+    #[must_use]
+    pub fn of_an_approach([a, b]: [Shape; 2], size: f64, at_a: Placement, mut at_b: Placement) -> Option<Self> {
+        for _ in 0..60 {
+            let found = separation(&a, &b, &at_a, &at_b, &Goal::penetration()).ok()?;
+            if found.signed_distance.abs() < 1e-9 * size {
+                let goal = DerivativeGoal::default();
+                let told = derivatives(&a, &b, &at_a, &at_b, &found, &goal, &Goal::penetration()).ok()?;
+                let on_b = at_b.rotation.tr_mul(&(found.point_on_b - at_b.translation));
+                let is_one_point = told.is_valid && !told.on_border;
+                return is_one_point.then_some(Self { a, b, at_a, on_a: found.point_on_a, on_b, size });
+            }
+            at_b.translation -= found.normal * found.signed_distance;
+        }
+        None
+    }
+
+    /// The same for an approach at random.
+    pub(super) fn random(shapes: [Shape; 2], size: f64, random: &mut Random) -> Option<Self> {
+        let at_a = placed(Vec3::zeros(), random.rotation())?;
+        let at_b = placed(random.direction() * (4.0 * size), random.rotation())?;
+        Self::of_an_approach(shapes, size, at_a, at_b)
+    }
+
+    /// A place to start from, apart from A.
+    pub(super) fn start(&self, random: &mut Random) -> Option<Pose> {
+        Pose::new(self.at_a.translation + random.direction() * (3.0 * self.size), random.rotation()).ok()
+    }
+
+    fn state(&self, pose: Pose) -> Option<State> {
+        let at_b = pose.placement();
+        let found = separation(&self.a, &self.b, &self.at_a, &at_b, &Goal::penetration()).ok()?;
+        let wanted = at_b.translation + at_b.rotation * self.on_b;
+        let (x1, x2) = (found.point_on_a, found.point_on_b);
+        let of = [x1 - self.on_a, x2 - wanted, x1 - x2].map(|part| part / self.size);
+        Some(State { pose, at_b, found, residuals: SVector::from_fn(|row, _| of[row / 3][row % 3]) })
+    }
+
+    /// Follows derivatives from `start` until the target is reached, no step helps any more, or the budget is used up. None of shapes that have no
+    /// separation.
+    #[must_use]
+    pub fn reach(&self, start: Pose, attempt: &Attempt) -> Option<Course> {
+        let mut schedule = EpsilonSchedule::default();
+        let mut state = self.state(start)?;
+        let (mut queries, mut steps, mut damping, mut tries) = (1, 0, DAMPING, 0);
+        let is_random = matches!(attempt.method, DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian);
+        'steps: while !state.is_reached() && queries < attempt.budget {
+            tries += 1;
+            let goal = DerivativeGoal {
+                method: attempt.method,
+                epsilon: schedule.epsilon(),
+                samples: attempt.samples,
+                seed: attempt.seed,
+                stream: tries,
+            };
+            let (a, b, found) = (&self.a, &self.b, &state.found);
+            let told = derivatives(a, b, &self.at_a, &state.at_b, found, &goal, &Goal::penetration()).ok()?;
+            queries += told.cost.separations;
+            let jacobian = self.jacobian(&state, &told);
+            schedule.progressed(state.residuals.norm_squared());
+            let (square, slope) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&state.residuals));
+            let largest = square.diagonal().max().max(f64::MIN_POSITIVE);
+            loop {
+                let damped = square + SMatrix::<f64, 6, 6>::identity() * (damping * largest);
+                let step = damped.cholesky().map(|factors| -factors.solve(&slope));
+                if let Some(step) = step.filter(|step| step.norm() > 1e-12) {
+                    let step = step * (LONGEST_STEP / step.norm()).min(1.0);
+                    let next = self.state(moved(&state.pose, &step, self.size)?)?;
+                    queries += 1;
+                    if next.residuals.norm_squared() < state.residuals.norm_squared() {
+                        (state, damping, steps) = (next, (damping * 0.3).max(1e-12), steps + 1);
+                        continue 'steps;
+                    }
+                }
+                damping *= 4.0;
+                if damping > MOST_DAMPING || queries >= attempt.budget {
+                    break;
+                }
+            }
+            // What a formula says of this place it will say again; other samples, and less smoothing, may say something else.
+            let may_change = is_random || (attempt.method == DerivativeMethod::Smoothed1Gumbel && tries < 200);
+            if !may_change {
+                break;
+            }
+            damping = DAMPING;
+        }
+        Some(Course { reached: state.is_reached(), steps, queries, left: state.residuals.norm() })
+    }
+
+    /// Of the residuals, with respect to B's twist, turns scaled by the size.
+    fn jacobian(&self, state: &State, told: &Derivatives) -> SMatrix<f64, 9, 6> {
+        let arm = state.at_b.rotation * self.on_b;
+        let mut jacobian = SMatrix::<f64, 9, 6>::zeros();
+        for column in 0..6 {
+            let axis = Vec3::ith(column % 3, 1.0);
+            let (wanted, scale) =
+                if column < 3 { (axis, 1.0 / self.size) } else { (axis.cross(&arm), 1.0 / (self.size * self.size)) };
+            let (x1, x2) = (told.point_on_a[1].column(column), told.point_on_b[1].column(column));
+            for row in 0..3 {
+                jacobian[(row, column)] = x1[row] * scale;
+                jacobian[(3 + row, column)] = (x2[row] - wanted[row]) * scale;
+                jacobian[(6 + row, column)] = (x1[row] - x2[row]) * scale;
+            }
+        }
+        jacobian
+    }
+}
+
+impl State {
+    fn is_reached(&self) -> bool {
+        (0..3).all(|part| self.residuals.fixed_rows::<3>(3 * part).norm() < REACHED)
+    }
+}
+
+/// B after a twist whose turn is scaled by the size.
+fn moved(pose: &Pose, step: &SVector<f64, 6>, size: f64) -> Option<Pose> {
+    let (v, w) = (step.fixed_rows::<3>(0).into_owned(), step.fixed_rows::<3>(3) / size);
+    let angle = w.norm();
+    let turn = if angle > 0.0 { Quaternion::about_axis(w / angle, angle) } else { Quaternion::IDENTITY };
+    Pose::new(pose.translation() + v, turn.compose(pose.rotation())).ok()
+}
