@@ -2201,7 +2201,7 @@ type PairDerivatives struct {
 	OfA *TwistDerivatives `protobuf:"bytes,1,opt,name=of_a,json=ofA,proto3" json:"of_a,omitempty"` // with respect to moves of side A, in the world's axes
 	OfB *TwistDerivatives `protobuf:"bytes,2,opt,name=of_b,json=ofB,proto3" json:"of_b,omitempty"` // with respect to moves of side B, in the world's axes
 	// Of a pair with a side that is a robot's, in questions about its states: the gradient of the signed distance with respect to
-	// the joints' positions, in the order of `RobotModel.joints`; metres per radian, or per metre of sliding joints. Else empty
+	// the joints' positions, one number for each of a state's; metres per radian, or per metre of sliding joints. Else empty
 	Joints []float64        `protobuf:"fixed64,3,rep,packed,name=joints,proto3" json:"joints,omitempty"`
 	Method DerivativeMethod `protobuf:"varint,4,opt,name=method,proto3,enum=clearance.v1.DerivativeMethod" json:"method,omitempty"` // how they were made
 	// Metres: the least eigenvalue of distance plus radii of curvature across the normal, by which a change of the normal is

@@ -1017,7 +1017,7 @@ export type PairDerivatives = Message<"clearance.v1.PairDerivatives"> & {
 
   /**
    * Of a pair with a side that is a robot's, in questions about its states: the gradient of the signed distance with respect to
-   * the joints' positions, in the order of `RobotModel.joints`; metres per radian, or per metre of sliding joints. Else empty
+   * the joints' positions, one number for each of a state's; metres per radian, or per metre of sliding joints. Else empty
    *
    * @generated from field: repeated double joints = 3;
    */
