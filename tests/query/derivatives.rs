@@ -8,7 +8,7 @@ use std::sync::Arc;
 use clearance::geometry::{Placement, Pose, Quaternion, Shape, Vec3};
 use clearance::limits::Limits;
 use clearance::narrow_phase::{
-    Accuracy, Cost, DerivativeGoal, Derivatives, Goal, TwistMatrix, derivatives, separation,
+    Accuracy, Cost, DerivativeGoal, DerivativeMethod, Derivatives, Goal, TwistMatrix, derivatives, separation,
 };
 use clearance::query::{
     Attached, CheckStates, Clearance, ClearanceOf, ContactEventKind, ContactQuestion, ContactTracker, Context,
@@ -163,6 +163,7 @@ fn a_pair_has_its_derivatives_made_once_and_one_that_is_not_told_never() {
     };
     assert!(all.pairs.len() > 60, "{}", all.pairs.len());
     assert!(all.pairs.contains(all.nearest.as_ref().unwrap()), "the nearest with the same derivatives");
+    assert!(of(&all) > 100);
     assert_eq!(all.cost.derivative_corners, of(&all));
     let cut = ask(3, 0.05);
     assert_eq!((cut.pairs.len(), cut.truncated, &cut.nearest), (3, true, &all.nearest));
@@ -531,18 +532,63 @@ fn a_motion_has_the_derivatives_of_the_state_that_it_meets_in() {
     assert_eq!(stripped(item), plain);
 }
 
+fn by(method: DerivativeMethod, wants: Wants) -> Context {
+    let derivatives = DerivativeGoal { method, samples: 4, seed: 11, ..DerivativeGoal::default() };
+    Context { derivatives, ..with(wants, 0.02) }
+}
+
+const METHODS: [DerivativeMethod; 6] = [
+    DerivativeMethod::Exact,
+    DerivativeMethod::ExactCell,
+    DerivativeMethod::FiniteDifference,
+    DerivativeMethod::Smoothed0,
+    DerivativeMethod::Smoothed1Gaussian,
+    DerivativeMethod::Smoothed1Gumbel,
+];
+
 /// Whatever the threads, and whichever items are asked in one batch before.
 #[test]
 fn parts_of_a_batch_have_the_derivatives_of_the_whole() {
     let scene = pile();
     let snapshot = &*scene.snapshot();
-    let items = snapshot.bodies().map(|b| Subject::Body(b.id)).collect();
-    let query = PairQuery { items, mode: Mode::All, context: with(DERIVATIVES, 0.02) };
-    let prepared = Prepared::distance(snapshot, &query).unwrap();
-    let whole = prepared.answer(&|| false);
-    for width in [1, 7, 20] {
-        let parts = (0..prepared.len()).step_by(width);
-        let parts = parts.map(|first| prepared.run(first..(first + width).min(prepared.len()), &|| false));
-        assert_eq!(prepared.join(parts.collect::<Vec<_>>()), whole);
+    let items: Vec<Subject> = snapshot.bodies().map(|b| Subject::Body(b.id)).collect();
+    for method in METHODS {
+        let query = PairQuery { items: items.clone(), mode: Mode::All, context: by(method, DERIVATIVES) };
+        let prepared = Prepared::distance(snapshot, &query).unwrap();
+        let whole = prepared.answer(&|| false);
+        for width in [7, 20] {
+            let parts = (0..prepared.len()).step_by(width);
+            let parts = parts.map(|first| prepared.run(first..(first + width).min(prepared.len()), &|| false));
+            assert_eq!(prepared.join(parts.collect::<Vec<_>>()), whole);
+        }
+        // A pair has the same derivatives as the nearest and in the list, whether that is wanted or not.
+        let listing = Wants { pairs: true, ..DERIVATIVES };
+        let query = PairQuery { items: items.clone(), mode: Mode::All, context: by(method, listing) };
+        let listed = Prepared::distance(snapshot, &query).unwrap().answer(&|| false);
+        for (with_list, without) in listed.items.iter().zip(&whole.items) {
+            assert_eq!(with_list.nearest, without.nearest);
+        }
+    }
+}
+
+/// Which numbers random methods have is told by the item and the pair.
+#[test]
+fn samples_are_a_pairs_own_in_each_item_and_come_again() {
+    let scene = pile();
+    let snapshot = &*scene.snapshot();
+    let id = snapshot.bodies().nth(5).unwrap().id;
+    let twists = |pair: &Option<PairAnswer>| pair.as_ref().unwrap().derivatives.as_ref().unwrap().twists.clone();
+    let ask = |method| {
+        let items = vec![Subject::Body(id), Subject::Body(id)];
+        let query = PairQuery { items, mode: Mode::All, context: by(method, DERIVATIVES) };
+        Prepared::distance(snapshot, &query).unwrap().answer(&|| false).items
+    };
+    for method in METHODS {
+        let is_random = matches!(method, DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian);
+        let items = ask(method);
+        let [first, second] = [&items[0], &items[1]].map(|one| twists(&one.nearest));
+        assert_eq!(first.seed != 0, first != second, "{method:?}");
+        assert!(first != second || !is_random, "{method:?}");
+        assert_eq!(ask(method), items);
     }
 }

@@ -33,7 +33,8 @@ pub(super) fn exact(
     }
     let (axes, tilt) = (across(normal), tilt(found.normal_error));
     let [x, y] = axes;
-    let sides = [Side::of(&piece_a, [x, y, normal], tilt), Side::of(&piece_b, [x, y, -normal], tilt)];
+    let mut side = |piece: &TouchingPiece, up| Side::of(piece, [x, y, up], tilt, &mut told.cost);
+    let sides = [side(&piece_a, normal), side(&piece_b, -normal)];
     let response = Response::new(normal, axes, found.signed_distance, [&sides[0], &sides[1]]);
     response.tell(arms, told);
     (told.method, told.residual) = (DerivativeMethod::ExactCell, found.point_error);

@@ -7,6 +7,7 @@
 use arrayvec::ArrayVec;
 
 use super::super::patch::{Face, PatchCost, TouchingPiece, View, face, is_wall};
+use super::derivatives::DerivativeCost;
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::{Core, Vec3, length};
 
@@ -47,7 +48,7 @@ pub(super) struct Side {
 impl Side {
     /// `axes`: x and y of the plane and the direction towards the other shape, in the axes of both placements. The piece is placed
     /// from its own witness point; `tilt`: how far the normal may be off.
-    pub fn of(piece: &TouchingPiece, axes: [Vec3; 3], tilt: f64) -> Self {
+    pub fn of(piece: &TouchingPiece, axes: [Vec3; 3], tilt: f64, cost: &mut DerivativeCost) -> Self {
         let swept = Mat2::identity() * piece.swept_radius;
         if is_wall(&piece.core) {
             return Self { flat: whole_plane(), radii: Mat2::zeros(), on_border: false };
@@ -67,7 +68,9 @@ impl Side {
         let extent = length(piece.position) + piece.swept_radius;
         let slack = SLACK_ULPS * UNIT_ROUNDOFF * extent;
         let view = View::new(&piece.rotation, piece.position, axes, piece.swept_radius, 1.0).within(tilt, slack);
-        let face = face(&piece.core, &view, &mut PatchCost::default());
+        let mut looked_at = PatchCost::default();
+        let face = face(&piece.core, &view, &mut looked_at);
+        cost.corners += looked_at.corners;
         let flat = flat_of(&face, slack);
         let round = round(&piece.core, in_core, at, flat.len());
         let radii = without(round + swept, &flat);

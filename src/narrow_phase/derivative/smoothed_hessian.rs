@@ -57,7 +57,7 @@ impl Smoothing<'_> {
     ) -> Result<SmoothedSide, NoDerivatives> {
         let known = |side| Ok(SmoothedSide { side, error: 0.0, is_sampled: false });
         if is_wall(&piece.core) {
-            return known(Side::of(piece, axes, 0.0)); // Flat everywhere, also in the mean.
+            return known(Side::of(piece, axes, 0.0, cost)); // Flat everywhere, also in the mean.
         }
         let swept = Mat2::identity() * piece.swept_radius;
         if matches!(*piece.core, Core::Point) {
@@ -76,7 +76,7 @@ impl Smoothing<'_> {
                 });
             }
             if matches!(*piece.core, Core::Ellipsoid { radii } if radii.min() > 0.0) {
-                return known(Side::of(piece, axes, 0.0));
+                return known(Side::of(piece, axes, 0.0, cost));
             }
         }
         let (hessian, error) = self.sampled(&piece.core, &in_core, number)?;

@@ -153,3 +153,19 @@ async fn the_scene_stays_pinned_while_it_changes() {
     let counts = |estimated: &Estimated| estimated.rows.iter().map(|row| row.verdicts).collect::<Vec<_>>();
     assert_eq!(counts(&before), counts(&after));
 }
+
+/// A build without the code has no price to tell: named, the output is refused as a question for it would be.
+#[tokio::test]
+async fn derivatives_have_a_price_where_there_is_code_for_them() {
+    let outputs = vec![Output::Witness, Output::Derivatives];
+    let asked = Estimate { outputs, tolerances: vec![1e-6], sample: Some(5), ..estimate() };
+    let estimated = ask(patient(), asked).await;
+    if cfg!(not(feature = "effect-derivatives")) {
+        let refused = Refused::NotBuilt { field: "context.wants", effect: "derivatives" };
+        assert!(estimated.unwrap_err().to_string().contains(&refused.to_string().replace("context.wants: ", "")));
+        return;
+    }
+    let rows = estimated.unwrap().rows;
+    let corners: Vec<f64> = rows.iter().map(|row| row.mean_cost.unwrap().derivative_corners).collect();
+    assert!(corners[0] == 0.0 && corners[1] >= 16.0, "two boxes of eight corners, {corners:?}");
+}
