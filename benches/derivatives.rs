@@ -1,6 +1,7 @@
 //! What do derivatives cost? Each method as a multiple of the distance alone, of the same pairs in the same rounds.
 //!
-//! `cargo bench --no-default-features --features effect-derivatives --bench derivatives`, below a minute. Pairs are 1 cm apart, turned at random.
+//! `cargo bench --no-default-features --features effect-derivatives --bench derivatives`, below a minute. Pairs are 1 cm apart, or
+//! as deep in one another, turned at random.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -10,7 +11,9 @@ use clearance::narrow_phase::{Depth, DerivativeGoal, DerivativeMethod, Goal, der
 
 const PAIRS: usize = 200;
 const ROUNDS: usize = 31;
-const GAP: f64 = 0.01;
+
+/// Metres.
+const GAPS: [f64; 2] = [0.01, -0.01];
 
 struct Pair {
     a: Shape,
@@ -62,13 +65,13 @@ fn place(at: Vec3, turn: Quaternion) -> Placement {
     Pose::new(at, turn).expect("finite numbers").placement()
 }
 
-fn pair(a: Shape, b: Shape, random: &mut Random) -> Pair {
+fn pair(a: Shape, b: Shape, gap: f64, random: &mut Random) -> Pair {
     let at_a = place(Vec3::zeros(), random.turn());
     let turn = random.turn();
     let mut at_b = place(random.direction() * 4.0, turn);
     for _ in 0..20 {
         let found = separation(&a, &b, &at_a, &at_b, &Goal::penetration()).expect("bounded shapes");
-        at_b.translation += found.normal * (GAP - found.signed_distance);
+        at_b.translation += found.normal * (gap - found.signed_distance);
     }
     Pair { at_b: place(at_b.translation, turn), a, b, at_a }
 }
@@ -89,19 +92,22 @@ const METHODS: [(DerivativeMethod, &str, u32); 2] =
     [(DerivativeMethod::Exact, "exact", 1), (DerivativeMethod::ExactCell, "exact_cell", 1)];
 
 fn main() {
-    let goal = Goal { depth: Depth::Distance, ..Goal::penetration() };
     println!("| pairs of | derivatives | distance and derivatives | to the distance alone | separations | valid |");
     println!("| --- | --- | --- | --- | --- | --- |");
-    for (name, make) in [
-        ("ellipsoids", ellipsoid as fn(&mut Random) -> Shape),
-        ("hulls of 250", |random: &mut Random| hull(250, random)),
-        ("hulls of 20", |random: &mut Random| hull(20, random)),
+    for (name, make, gap) in [
+        ("ellipsoids", ellipsoid as fn(&mut Random) -> Shape, GAPS[0]),
+        ("ellipsoids, in one another", ellipsoid, GAPS[1]),
+        ("hulls of 250", |random: &mut Random| hull(250, random), GAPS[0]),
+        ("hulls of 250, in one another", |random: &mut Random| hull(250, random), GAPS[1]),
+        ("hulls of 20", |random: &mut Random| hull(20, random), GAPS[0]),
     ] {
+        let depth = if gap > 0.0 { Depth::Distance } else { Depth::Penetration };
+        let goal = Goal { depth, ..Goal::penetration() };
         let mut random = Random(7);
         let pairs: Vec<Pair> = (0..PAIRS)
             .map(|_| {
                 let [a, b] = [make(&mut random), make(&mut random)];
-                pair(a, b, &mut random)
+                pair(a, b, gap, &mut random)
             })
             .collect();
         let asked = |pair: &Pair| separation(&pair.a, &pair.b, &pair.at_a, &pair.at_b, &goal).expect("bounded shapes");

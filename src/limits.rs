@@ -17,6 +17,8 @@ pub struct Limits {
     pub max_joint_values: usize,
     /// Pairs listed for one item of an answer.
     pub max_pairs: usize,
+    /// Pairs of samples for the derivatives of one pair.
+    pub max_derivative_samples: usize,
     /// States that one motion may be looked at in.
     pub max_motion_states: usize,
     /// Items that an estimate measures of its question.
@@ -114,6 +116,7 @@ impl Default for Limits {
             max_items: 100_000,
             max_joint_values: 2_000_000,
             max_pairs: 100_000,
+            max_derivative_samples: 10_000,
             max_motion_states: 100_000,
             max_estimate_sample: 256,
             max_estimate_rows: 64,
@@ -189,6 +192,7 @@ impl Limits {
             max_items,
             max_joint_values,
             max_pairs,
+            max_derivative_samples,
             max_motion_states,
             max_estimate_sample,
             max_estimate_rows,
@@ -240,6 +244,12 @@ impl Limits {
             row("max_items", max_items, "items per question", EXHAUSTED),
             row("max_joint_values", max_joint_values, "numbers per question", EXHAUSTED),
             row("max_pairs", max_pairs, "pairs listed per item", EXHAUSTED),
+            row(
+                "max_derivative_samples",
+                max_derivative_samples,
+                "pairs of samples per pair with derivatives",
+                EXHAUSTED,
+            ),
             row("max_motion_states", max_motion_states, "states per motion", EXHAUSTED),
             row(
                 "max_estimate_sample",

@@ -85,10 +85,10 @@ func TestAnEstimateIsOfTheQuestionAsAsked(t *testing.T) {
 	}
 	// Each question has its own outputs; without subjects all pairs are one item.
 	prices.Outputs = nil
-	if told := must(scene.EstimateCollide(ctx, nil, prices))(t); told.Items != 1 || len(told.Rows) != 5 {
+	if told := must(scene.EstimateCollide(ctx, nil, prices))(t); told.Items != 1 || len(told.Rows) != 6 {
 		t.Error(told)
 	}
-	if told := must(scene.EstimateClearance(ctx, 2, subjects, prices))(t); told.Items != 3 || len(told.Rows) != 4 {
+	if told := must(scene.EstimateClearance(ctx, 2, subjects, prices))(t); told.Items != 3 || len(told.Rows) != 5 {
 		t.Error(told)
 	}
 }
@@ -103,17 +103,17 @@ func TestEstimatesOfARobot(t *testing.T) {
 	))(t)
 	prices := clearance.Prices{Tolerances: []float64{1e-2, 1e-3}}
 	states := [][]float64{{0, -0.5}, {math.Pi / 2, -0.5}, {-1, -0.5}}
-	// Verdict and pairs, which no tolerance changes; distance, witness, depth and patch.
+	// Verdict and pairs, which no tolerance changes; distance, witness, depth, patch and derivatives.
 	of := must(scene.EstimateStates(ctx, "crane", states, prices))(t)
-	if of.Items != 3 || len(of.Rows) != 2+4*2 || of.Rows[0].Output != pb.Output_OUTPUT_VERDICT || of.Rows[0].Tolerance != nil {
+	if of.Items != 3 || len(of.Rows) != 2+5*2 || of.Rows[0].Output != pb.Output_OUTPUT_VERDICT || of.Rows[0].Tolerance != nil {
 		t.Error(of)
 	}
 	motions := must(scene.EstimateMotions(ctx, "crane", states[:2], [][]float64{{0.2, -0.5}, {1, -0.5}}, prices))(t)
-	if motions.Items != 2 || len(motions.Rows) != 5*2 || motions.Rows[0].GetTolerance() != 1e-2 {
+	if motions.Items != 2 || len(motions.Rows) != 6*2 || motions.Rows[0].GetTolerance() != 1e-2 {
 		t.Error(motions)
 	}
 	path := must(scene.EstimatePath(ctx, "crane", [][]float64{{-1, 0}, {0, 0}, {math.Pi / 2, 0}, {3, 0}}, prices))(t)
-	if path.Items != 3 || len(path.Rows) != 5*2 {
+	if path.Items != 3 || len(path.Rows) != 6*2 {
 		t.Error(path)
 	}
 	for _, row := range append(append(of.Rows, motions.Rows...), path.Rows...) {

@@ -36,7 +36,19 @@ func Want(wanted Wanted) Option {
 	return func(a *Asked) {
 		wants := wanted()
 		wants.Pairs = a.Context.GetWants().GetPairs()
+		wants.Derivatives = a.Context.GetWants().GetDerivatives()
 		a.Context.Wants = wants
+	}
+}
+
+// Derivatives wants, as well, how pairs that have points and normals change when their bodies move; nil: exact ones.
+func Derivatives(options *pb.DerivativeOptions) Option {
+	return func(a *Asked) {
+		if a.Context.Wants == nil {
+			a.Context.Wants = &pb.Wants{}
+		}
+		a.Context.Wants.Derivatives = true
+		a.Context.Derivatives = options
 	}
 }
 

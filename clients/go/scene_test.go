@@ -46,6 +46,20 @@ func TestDistanceAndDepthOfBalls(t *testing.T) {
 	if p := clearance.PointOf(apart.Witness.PointOnB); math.Abs(p[0]-2.5) > 1e-9 {
 		t.Error(p)
 	}
+	moved := must(scene.Distance(ctx, nil, clearance.Derivatives(nil), clearance.Want(clearance.WitnessToo)))(t).Items[0].Nearest
+	exact := moved.GetDerivatives()
+	for column, truth := range []float64{1, 0, 0, 0, 0, 0} {
+		if d := exact.GetOfB().GetSignedDistance(); len(d) != 6 || math.Abs(d[column]-truth) > 1e-9 {
+			t.Error(d)
+		}
+	}
+	if exact.Method != pb.DerivativeMethod_DERIVATIVE_METHOD_EXACT || len(exact.OfA.Normal) != 18 || apart.Derivatives != nil {
+		t.Error(exact)
+	}
+	options := &pb.DerivativeOptions{Method: pb.DerivativeMethod_DERIVATIVE_METHOD_FINITE_DIFFERENCE}
+	if told := must(scene.Distance(ctx, nil, clearance.Derivatives(options)))(t).Items[0].Nearest.Derivatives; told.Method != options.Method {
+		t.Error(told)
+	}
 	inside := clearance.Placed(clearance.Sphere(0.1), clearance.At(0.5, 0, 0))
 	probed := must(scene.Distance(ctx, []*pb.Subject{inside}, clearance.Want(clearance.DepthToo)))(t).Items[0]
 	if clearance.Verdict(probed.Verdict) != clearance.Collision {

@@ -83,8 +83,19 @@ struct Families {
 }
 
 /// The counters of the kernel that add up what answers cost.
-const COSTS: [&str; 8] =
-    ["supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts"];
+const COSTS: [&str; 11] = [
+    "supports",
+    "gjk_iterations",
+    "epa_iterations",
+    "nodes",
+    "pairs",
+    "escalations",
+    "patch_corners",
+    "patch_cuts",
+    "derivative_separations",
+    "derivative_supports",
+    "derivative_corners",
+];
 
 impl CallMetrics {
     /// Metrics that are part of what `registry` tells.
@@ -177,6 +188,9 @@ impl Observer for CallMetrics {
             cost.escalations,
             cost.patch_corners,
             cost.patch_cuts,
+            cost.derivative_separations,
+            cost.derivative_supports,
+            cost.derivative_corners,
         ];
         for (total, count) in families.cost.iter().zip(counts) {
             total.inc_by(count);

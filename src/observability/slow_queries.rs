@@ -63,6 +63,9 @@ impl Observer for SlowQueries {
             escalations = cost.map(|cost| cost.escalations),
             patch_corners = cost.map(|cost| cost.patch_corners),
             patch_cuts = cost.map(|cost| cost.patch_cuts),
+            derivative_separations = cost.map(|cost| cost.derivative_separations),
+            derivative_supports = cost.map(|cost| cost.derivative_supports),
+            derivative_corners = cost.map(|cost| cost.derivative_corners),
             trace_id = notes.trace(),
             times,
             "slow query"

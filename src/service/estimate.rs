@@ -7,9 +7,9 @@ use super::answered::Question;
 use super::deadline::Stop;
 use super::measured::{Measured, TURNS};
 use super::prices::Price;
-use super::view::View;
+use super::view::{View, check_samples};
 use crate::limits::{LimitExceeded, Limits};
-use crate::query::{BatchQuestion, ClearanceOf, Output, Refused, Worlds};
+use crate::query::{BatchQuestion, ClearanceOf, Output, Refused, Wants, Worlds};
 use crate::scene::{Epoch, Revision};
 
 /// Tolerances that are measured where none is named, metres; the last is the floor of rounding.
@@ -127,7 +127,10 @@ impl Estimate {
             BatchQuestion::Collide(_) | BatchQuestion::Distance(_) => 0,
         };
         LimitExceeded::check("max_joint_values", joint_values, limits.max_joint_values)?;
-        LimitExceeded::check("max_pairs", self.question.context().max_pairs, limits.max_pairs)?;
+        let context = self.question.context();
+        LimitExceeded::check("max_pairs", context.max_pairs, limits.max_pairs)?;
+        let derivatives = self.outputs.is_empty() || self.outputs.contains(&Output::Derivatives);
+        check_samples(Wants { derivatives, ..Wants::VERDICT }, context.derivatives.samples, limits)?;
         Ok(())
     }
 

@@ -26,7 +26,7 @@ use super::scene_health::SceneHealth;
 use super::scene_watch::SceneWatch;
 use super::scenes::{SceneFigures, SceneSummary, Scenes};
 use super::traffic::Traffic;
-use super::view::View;
+use super::view::{View, check_samples};
 use super::workers::{Workers, caught, prepare};
 use crate::limits::Limits;
 use crate::query::ContactQuestion;
@@ -510,6 +510,7 @@ impl Service {
         note(|notes| notes.note_scene(&target.scene));
         let first = cell.find(target.revision, self.deadline(patience)?).await?.snapshot;
         let question = question(&first, &self.limits)?;
+        check_samples(question.wants, question.derivatives.samples, &self.limits)?;
         Ok(ContactWatch::new(Arc::clone(self), cell, (question, first), patience, permit))
     }
 

@@ -16,7 +16,7 @@ use crate::limits::{LimitExceeded, Limits};
 use crate::query::{
     Answer, Answers, CastItem, CastRays, CastShapes, Casts, CheckMotions, CheckMovingPairs, CheckStates, Clearance,
     ClearanceOf, Context, ItemBatch, MovingPairs, NearestBodies, NearestItem, Neighbours, Overlap, OverlapItem,
-    Overlaps, Overlay, Overlays, PairQuery, Part, Prepared, Rays, Verdict, World, Worlds,
+    Overlaps, Overlay, Overlays, PairQuery, Part, Prepared, Rays, Verdict, Wants, World, Worlds,
 };
 use crate::scene::{Revision, Snapshot};
 
@@ -205,7 +205,7 @@ impl View {
     {
         self.note_question(of, batch.len(), context);
         LimitExceeded::check("max_items", batch.len(), self.limits.max_items)?;
-        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        self.check_context(context)?;
         let run = |part: Range<usize>| batch.run(part, &|| self.stop.now());
         let parts: Vec<(Vec<B::Item>, usize)> = self.each(batch.len(), SMALLEST_PART, run);
         let answers = batch.join(parts);
@@ -219,7 +219,7 @@ impl View {
     fn answer(&self, of: &'static str, question: &Prepared<'_>, context: &Context) -> Result<Answer, ServiceError> {
         self.note_question(of, question.len(), context);
         LimitExceeded::check("max_items", question.len(), self.limits.max_items)?;
-        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        self.check_context(context)?;
         let run = |part: Range<usize>| question.run(part, &|| self.stop.now());
         let parts: Vec<Part> = self.each(question.len(), question.smallest_part(), run);
         let answer = question.join(parts);
@@ -229,6 +229,11 @@ impl View {
             return Err(ServiceError::DeadlineExceeded);
         }
         Ok(answer)
+    }
+
+    fn check_context(&self, context: &Context) -> Result<(), LimitExceeded> {
+        LimitExceeded::check("max_pairs", context.max_pairs, self.limits.max_pairs)?;
+        check_samples(context.wants, context.derivatives.samples, &self.limits)
     }
 
     fn note_question(&self, of: &'static str, items: usize, context: &Context) {
@@ -242,6 +247,12 @@ impl View {
             notes.note_answered(answered());
         }
     }
+}
+
+/// Samples count where derivatives are wanted.
+pub(super) fn check_samples(wants: Wants, samples: u32, limits: &Limits) -> Result<(), LimitExceeded> {
+    let asked = if wants.derivatives { samples as usize } else { 0 };
+    LimitExceeded::check("max_derivative_samples", asked, limits.max_derivative_samples)
 }
 
 /// Ranges of items that follow one another, of `smallest` items at least but for the last.

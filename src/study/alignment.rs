@@ -16,7 +16,7 @@ use crate::geometry::{InvalidShape, Pose, Shape};
 use crate::narrow_phase::DerivativeMethod;
 
 /// Of the time; the attempts take as long as they take.
-pub(super) const SHARE: f64 = 0.1;
+pub(super) const SHARE: f64 = 0.06;
 
 /// Places to start from, of a full study.
 const STARTS: usize = 1000;

@@ -7,8 +7,7 @@
 //! min over T of  |x1(T) - t1|^2 + |x2(T) - T t2|^2 + |x1(T) - x2(T)|^2,
 //! ```
 //!
-//! t1 in the world, t2 in B's frame. Steps are Levenberg's and Marquardt's, on twists of B about its own origin, turns scaled by its size so
-//! that all six are metres.
+//! t1 in the world, t2 in B's frame. Steps are Levenberg's and Marquardt's, on twists of B about its own origin, lengths in sizes of the bodies.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -19,12 +18,21 @@ use crate::narrow_phase::{
     DerivativeGoal, DerivativeMethod, Derivatives, EpsilonSchedule, Goal, Separation, derivatives, separation,
 };
 
-/// Damping at the start, and beyond which no step is left that helps; parts of the largest diagonal entry.
+/// Damping at the start, and beyond which no step is left that helps; parts of the largest diagonal entry. Where smoothing may tell something else
+/// next time, it is asked sooner.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e9;
+const MOST_SMOOTHED_DAMPING: f64 = 1e2;
 
 /// A step's length at most, parts of the size.
-const LONGEST_STEP: f64 = 0.5;
+const LONGEST_STEP: f64 = 1.0;
+
+/// A step helps if the cost is below one of so many before it (Grippo, Lampariello and Lucidi 1986): what leaps from feature to feature
+/// does not fall from step to step.
+const MEMORY: usize = 5;
+
+/// Derivatives asked at most: an attempt ends also where no step is worth a separation.
+const MOST_TRIES: u64 = 2000;
 
 /// Reached: every residual is below this part of the size.
 pub(super) const REACHED: f64 = 1e-3;
@@ -125,9 +133,11 @@ impl ContactTarget {
     pub fn reach(&self, start: Pose, attempt: &Attempt) -> Option<Course> {
         let mut schedule = EpsilonSchedule::default();
         let mut state = self.state(start)?;
-        let (mut queries, mut steps, mut damping, mut tries) = (1, 0, DAMPING, 0);
-        let is_random = matches!(attempt.method, DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian);
-        'steps: while !state.is_reached() && queries < attempt.budget {
+        let mut costs = vec![state.residuals.norm_squared()];
+        let (mut queries, mut damping, mut tries) = (1, DAMPING, 0);
+        let is_smoothed = attempt.is_smoothed();
+        let most_damping = if is_smoothed { MOST_SMOOTHED_DAMPING } else { MOST_DAMPING };
+        'steps: while !state.is_reached() && queries < attempt.budget && tries < MOST_TRIES {
             tries += 1;
             let goal = DerivativeGoal {
                 method: attempt.method,
@@ -139,45 +149,43 @@ impl ContactTarget {
             let (a, b, found) = (&self.a, &self.b, &state.found);
             let told = derivatives(a, b, &self.at_a, &state.at_b, found, &goal, &Goal::penetration()).ok()?;
             queries += told.cost.separations;
+            schedule.progressed(state.residuals.norm());
             let jacobian = self.jacobian(&state, &told);
-            schedule.progressed(state.residuals.norm_squared());
             let (square, slope) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&state.residuals));
             let largest = square.diagonal().max().max(f64::MIN_POSITIVE);
-            loop {
+            let worst = costs.iter().rev().take(MEMORY).copied().fold(0.0, f64::max);
+            while damping <= most_damping && queries < attempt.budget {
                 let damped = square + SMatrix::<f64, 6, 6>::identity() * (damping * largest);
                 let step = damped.cholesky().map(|factors| -factors.solve(&slope));
                 if let Some(step) = step.filter(|step| step.norm() > 1e-12) {
                     let step = step * (LONGEST_STEP / step.norm()).min(1.0);
                     let next = self.state(moved(&state.pose, &step, self.size)?)?;
                     queries += 1;
-                    if next.residuals.norm_squared() < state.residuals.norm_squared() {
-                        (state, damping, steps) = (next, (damping * 0.3).max(1e-12), steps + 1);
+                    if next.residuals.norm_squared() < worst {
+                        costs.push(next.residuals.norm_squared());
+                        (state, damping) = (next, (damping * 0.3).max(1e-12));
                         continue 'steps;
                     }
                 }
                 damping *= 4.0;
-                if damping > MOST_DAMPING || queries >= attempt.budget {
-                    break;
-                }
             }
             // What a formula says of this place it will say again; other samples, and less smoothing, may say something else.
-            let may_change = is_random || (attempt.method == DerivativeMethod::Smoothed1Gumbel && tries < 200);
-            if !may_change {
+            if !is_smoothed {
                 break;
             }
             damping = DAMPING;
         }
+        let steps = costs.len() as u64 - 1;
         Some(Course { reached: state.is_reached(), steps, queries, left: state.residuals.norm() })
     }
 
-    /// Of the residuals, with respect to B's twist, turns scaled by the size.
+    /// Of the residuals, with respect to B's twist: velocities in sizes, turns in radians.
     fn jacobian(&self, state: &State, told: &Derivatives) -> SMatrix<f64, 9, 6> {
         let arm = state.at_b.rotation * self.on_b;
         let mut jacobian = SMatrix::<f64, 9, 6>::zeros();
         for column in 0..6 {
             let axis = Vec3::ith(column % 3, 1.0);
-            let (wanted, scale) =
-                if column < 3 { (axis, 1.0 / self.size) } else { (axis.cross(&arm), 1.0 / (self.size * self.size)) };
+            let (wanted, scale) = if column < 3 { (axis, 1.0) } else { (axis.cross(&arm), 1.0 / self.size) };
             let (x1, x2) = (told.point_on_a[1].column(column), told.point_on_b[1].column(column));
             for row in 0..3 {
                 jacobian[(row, column)] = x1[row] * scale;
@@ -189,15 +197,27 @@ impl ContactTarget {
     }
 }
 
+impl Attempt {
+    /// Whether another epsilon, or other samples, may say something else of the same place.
+    fn is_smoothed(&self) -> bool {
+        match self.method {
+            DerivativeMethod::Exact | DerivativeMethod::ExactCell | DerivativeMethod::FiniteDifference => false,
+            DerivativeMethod::Smoothed0 | DerivativeMethod::Smoothed1Gaussian | DerivativeMethod::Smoothed1Gumbel => {
+                true
+            }
+        }
+    }
+}
+
 impl State {
     fn is_reached(&self) -> bool {
         (0..3).all(|part| self.residuals.fixed_rows::<3>(3 * part).norm() < REACHED)
     }
 }
 
-/// B after a twist whose turn is scaled by the size.
+/// B after a twist, its velocity in sizes.
 fn moved(pose: &Pose, step: &SVector<f64, 6>, size: f64) -> Option<Pose> {
-    let (v, w) = (step.fixed_rows::<3>(0).into_owned(), step.fixed_rows::<3>(3) / size);
+    let (v, w) = (step.fixed_rows::<3>(0) * size, step.fixed_rows::<3>(3).into_owned());
     let angle = w.norm();
     let turn = if angle > 0.0 { Quaternion::about_axis(w / angle, angle) } else { Quaternion::IDENTITY };
     Pose::new(pose.translation() + v, turn.compose(pose.rotation())).ok()

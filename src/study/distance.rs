@@ -12,7 +12,7 @@ use super::study::{NoStudy, Study};
 use super::sweep::{Group, Measured, NOTHING, Setting, Start, Sweep, TOLERANCES, mark, table};
 
 /// Of the time.
-pub(super) const SHARE: f64 = 0.34;
+pub(super) const SHARE: f64 = 0.28;
 
 /// Metres apart.
 const GAPS: [f64; 4] = [1.0, 0.1, 0.01, 0.001];

@@ -18,7 +18,7 @@ use super::study::{NoStudy, Study};
 use super::table::{Table, nanoseconds, number};
 
 /// Of the time.
-pub(super) const SHARE: f64 = 0.12;
+pub(super) const SHARE: f64 = 0.1;
 
 /// Pieces at most.
 const PIECES: [usize; 5] = [32, 16, 8, 4, 2];

@@ -35,6 +35,8 @@ mod random;
 mod rungs;
 mod scale;
 mod section;
+#[cfg(feature = "effect-derivatives")]
+mod smoothing;
 mod sphere_cover;
 #[expect(clippy::module_inception, reason = "the study of the floor `study`")]
 mod study;

@@ -3,6 +3,8 @@
 #[cfg(feature = "effect-motion")]
 use crate::geometry::{Placement, Pose, Quaternion, RigidMotion, Vec3};
 use crate::narrow_phase::{Accuracy, Depth, Goal, PairCache, Separation, separation, separation_again};
+#[cfg(feature = "effect-derivatives")]
+use crate::narrow_phase::{DerivativeGoal, derivatives};
 #[cfg(feature = "effect-motion")]
 use crate::narrow_phase::{ImpactGoal, impact};
 #[cfg(feature = "effect-patch")]
@@ -43,6 +45,9 @@ enum Ask {
     /// The same, and the patch that its answer leads to.
     #[cfg(feature = "effect-patch")]
     Patch(Goal<'static>, PatchGoal),
+    /// The same, and how it changes when the bodies move.
+    #[cfg(feature = "effect-derivatives")]
+    Derivatives(Goal<'static>, DerivativeGoal),
     /// B comes along the line between the origins until it touches.
     #[cfg(feature = "effect-motion")]
     Impact(ImpactGoal<'static>),
@@ -63,6 +68,8 @@ fn outputs() -> Vec<Output> {
         one("depth, too, to 1e-6", Ask::Pair(depth)),
         #[cfg(feature = "effect-patch")]
         one("depth and patch to 1e-6", Ask::Patch(depth, PatchGoal::default())),
+        #[cfg(feature = "effect-derivatives")]
+        one("depth and exact derivatives to 1e-6", Ask::Derivatives(depth, DerivativeGoal::default())),
         #[cfg(feature = "effect-motion")]
         Output { name: "time of impact to 1e-9", ask: Ask::Impact(ImpactGoal::touch()), apart_only: true },
     ]
@@ -122,6 +129,12 @@ impl Set {
                 let Pair { a, b, at_a, at_b, .. } = &self.pairs[item];
                 let found = self.answer(item, goal);
                 let _ = std::hint::black_box(found.map(|found| contact_patch(a, b, at_a, at_b, &found, patch)));
+            }),
+            #[cfg(feature = "effect-derivatives")]
+            Ask::Derivatives(goal, wanted) => Way::new(items, move |item| {
+                let Pair { a, b, at_a, at_b, .. } = &self.pairs[item];
+                let found = self.answer(item, goal);
+                let _ = std::hint::black_box(found.map(|found| derivatives(a, b, at_a, at_b, &found, wanted, goal)));
             }),
             #[cfg(feature = "effect-motion")]
             Ask::Impact(goal) => Way::new(items, move |item| {

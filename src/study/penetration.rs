@@ -11,7 +11,7 @@ use super::study::{NoStudy, Study};
 use super::sweep::{Group, Measured, Setting, Start, Sweep, TOLERANCES, mark, table};
 
 /// Of the time.
-pub(super) const SHARE: f64 = 0.12;
+pub(super) const SHARE: f64 = 0.1;
 
 /// Signed distances, metres.
 const DEPTHS: [f64; 3] = [-0.001, -0.01, -0.1];

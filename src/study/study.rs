@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 use std::{fs, io};
 
-#[cfg(feature = "effect-derivatives")]
-use super::alignment;
 use super::machine::Machine;
 #[cfg(feature = "effect-motion")]
 use super::motion;
 use super::planner::Planner;
 use super::section::Section;
+#[cfg(feature = "effect-derivatives")]
+use super::{alignment, smoothing};
 use super::{batches, broad, distance, geometry, lecture, outputs, page, penetration, precision};
 
 /// How much work a study is.
@@ -121,6 +121,8 @@ const EXPERIMENTS: &[Experiment] = &[
     ("broad_phase", broad::SHARE, broad::section),
     ("batches", batches::SHARE, batches::section),
     ("lecture", lecture::SHARE, lecture::section),
+    #[cfg(feature = "effect-derivatives")]
+    ("derivatives", smoothing::SHARE, smoothing::section),
     #[cfg(feature = "effect-derivatives")]
     ("alignment", alignment::SHARE, alignment::section),
 ];

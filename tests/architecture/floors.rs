@@ -19,6 +19,12 @@ const COST: &str = "narrow_phase::Cost";
 const TERMINATION: &str = "narrow_phase::Termination";
 const PATCH: &str = "narrow_phase::ContactPatch";
 const PATCH_POINT: &str = "narrow_phase::ContactPoint";
+/// Derivatives, and how they are asked for.
+const DERIVATIVES: &str = "narrow_phase::Derivatives";
+const DERIVATIVE_COST: &str = "narrow_phase::DerivativeCost";
+const DERIVATIVE_GOAL: &str = "narrow_phase::DerivativeGoal";
+const DERIVATIVE_METHOD: &str = "narrow_phase::DerivativeMethod";
+const TWIST_MATRIX: &str = "narrow_phase::TwistMatrix";
 /// The choice of a solver stands in questions: a plain value too.
 const SOLVER: &str = "narrow_phase::Solver";
 /// The world that changes. Only `scene` and `service` know it; everybody else sees snapshots.
@@ -70,6 +76,11 @@ pub const FLOORS: &[Floor] = &[
             TERMINATION,
             PATCH,
             PATCH_POINT,
+            DERIVATIVES,
+            DERIVATIVE_COST,
+            DERIVATIVE_GOAL,
+            DERIVATIVE_METHOD,
+            TWIST_MATRIX,
             SOLVER,
         ],
         but_not: &[WRITER],
@@ -104,7 +115,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("iceoryx2", &["transports"]),
     ("indicatif", &["cli"]),
     ("libm", &[GEOMETRY, "limits", "narrow_phase", "broad_phase", "robot", "scene", "query", "study"]),
-    ("nalgebra", KERNEL),
+    ("nalgebra", &[GEOMETRY, "limits", "narrow_phase", "broad_phase", "robot", "scene", "query", "study"]),
     ("opentelemetry", &["observability"]),
     ("opentelemetry-otlp", &["observability"]),
     ("opentelemetry_sdk", &["observability"]),

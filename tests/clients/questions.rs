@@ -127,7 +127,10 @@ fn scene(model: &str) -> Vec<Call> {
 }
 
 fn wanting(distance: bool, witness: bool, depth: bool, pairs: bool) -> v1::Context {
-    v1::Context { wants: Some(v1::Wants { distance, witness, depth, pairs, patch: false }), ..context() }
+    v1::Context {
+        wants: Some(v1::Wants { distance, witness, depth, pairs, patch: false, derivatives: false }),
+        ..context()
+    }
 }
 
 fn in_bulk(context: v1::Context) -> v1::Context {
@@ -188,6 +191,7 @@ fn of_robots() -> Vec<Call> {
         ask("Queries/CheckStates", stop(of_states(&STATES, in_bulk(context())))),
         ask("Queries/CheckStates", of_states(&STATES[..2], supposed())),
         ask("Queries/CheckStates", of_states(&STATES[..2], patches(0.05))),
+        ask("Queries/CheckStates", of_states(&STATES[..2], derivatives(v1::DerivativeMethod::Unspecified))),
         ask("Queries/CheckMotions", motions(context())),
         ask("Queries/CheckMotions", motions(in_bulk(context()))),
         ask("Queries/CheckPath", path(context())),
@@ -217,6 +221,11 @@ fn of_bodies() -> Vec<Call> {
         ask("Queries/Distance", asking(solver(v1::Solver::Exact), vec![probe.clone()])),
         ask("Queries/Clearance", near),
         ask("Queries/Collide", v1::CollideRequest { context: Some(patches(0.6)), ..collide(subjects()) }),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Exact), subjects())),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::FiniteDifference), vec![probe.clone()])),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Smoothed0), vec![probe.clone()])),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Smoothed1Gaussian), vec![probe.clone()])),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Smoothed1Gumbel), vec![probe])),
     ]
 }
 
@@ -224,6 +233,14 @@ fn of_bodies() -> Vec<Call> {
 fn patches(margin: f64) -> v1::Context {
     let wants = v1::Wants { pairs: true, patch: true, ..v1::Wants::default() };
     v1::Context { wants: Some(wants), margin, max_patch_points: Some(6), ..context() }
+}
+
+/// How the nearest pairs change when their bodies move.
+fn derivatives(method: v1::DerivativeMethod) -> v1::Context {
+    let wants = v1::Wants { depth: true, derivatives: true, ..v1::Wants::default() };
+    let options =
+        v1::DerivativeOptions { method: method.into(), epsilon: Some(0.05), samples: Some(8), seed: Some(1 << 40) };
+    v1::Context { wants: Some(wants), derivatives: Some(options), ..context() }
 }
 
 fn of_casts() -> Vec<Call> {
@@ -295,6 +312,11 @@ fn refused() -> Vec<Call> {
         context: Some(v1::Context { margin: f64::NAN, ..context() }),
         ..collide(vec![all_pairs()])
     };
+    let no_samples = v1::Context {
+        derivatives: Some(v1::DerivativeOptions { samples: Some(0), ..v1::DerivativeOptions::default() }),
+        ..context()
+    };
+    let without_samples = v1::CollideRequest { context: Some(no_samples), ..collide(vec![all_pairs()]) };
     vec![
         ask("Scenes/CreateScene", v1::CreateSceneRequest { name: SCENE.to_owned(), broad_phase: 0 }),
         ask("Scenes/Apply", apply(negative)),
@@ -303,6 +325,7 @@ fn refused() -> Vec<Call> {
         ask("Queries/Collide", elsewhere),
         ask("Queries/Collide", gone),
         ask("Queries/Collide", not_a_number),
+        ask("Queries/Collide", without_samples),
         ask("Queries/CheckStates", states(vec![0.0; 5])),
     ]
 }
@@ -315,6 +338,7 @@ fn stream() -> Call {
         Question::Collide(collide(vec![all_pairs()])),
         Question::CheckStates(of_states(&STATES[..2], in_bulk(wanting(true, false, false, false)))),
         Question::CheckStates(states(vec![0.0; 5])),
+        Question::CheckStates(of_states(&STATES[..1], derivatives(v1::DerivativeMethod::Exact))),
         Question::Distance(distance(vec![body(named("post"))])),
     ];
     let numbered = questions.into_iter().zip(0..);

@@ -26,6 +26,7 @@ mod oracle;
 mod pair_bytes;
 #[cfg(feature = "effect-patch")]
 mod patch_regimes;
+#[cfg(feature = "effect-patch")]
 mod patches;
 mod random_pairs;
 mod rays;

@@ -1,8 +1,12 @@
 //! Smoothing of order one. Oracle: the exact formulae, where smoothing is to vanish; second differences of a softmax of heights written out
 //! here; gauge identities; swapped sides; laws of chance with fixed seeds.
 
+use std::hint::black_box;
+
 use clearance::geometry::{Core, Placement, Shape, Vec3};
-use clearance::narrow_phase::{DerivativeGoal, DerivativeMethod, Derivatives, MOST_SAMPLES};
+use clearance::narrow_phase::{
+    DerivativeGoal, DerivativeMethod, Derivatives, Goal, MOST_SAMPLES, Separation, TwistMatrix, derivatives, separation,
+};
 
 use crate::derivative_pairs::{KINDS, Placed, Random, difference, hull, is_wall, numbers, shape};
 
@@ -115,7 +119,7 @@ fn gumbel_keeps_to_common_motion_and_to_swapped_sides() {
         let (v, w) = (random.vector(1.0), random.vector(1.0));
         // About the origin of the frame: each body's own origin moves along.
         let twists = pair.at.map(|at| (v + w.cross(&at.translation), w));
-        let change = |m: &[clearance::narrow_phase::TwistMatrix; 2]| {
+        let change = |m: &[TwistMatrix; 2]| {
             (0..2)
                 .map(|b| {
                     m[b] * nalgebra::Vector6::from_fn(|i, _| if i < 3 { twists[b].0[i] } else { twists[b].1[i - 3] })
@@ -155,8 +159,8 @@ fn gumbel_keeps_to_common_motion_and_to_swapped_sides() {
     }
 }
 
-fn swapped(pair: &Placed, found: &clearance::narrow_phase::Separation, epsilon: f64) -> Derivatives {
-    let found = clearance::narrow_phase::Separation {
+fn swapped(pair: &Placed, found: &Separation, epsilon: f64) -> Derivatives {
+    let found = Separation {
         normal: -found.normal,
         point_on_a: found.point_on_b,
         point_on_b: found.point_on_a,
@@ -167,7 +171,7 @@ fn swapped(pair: &Placed, found: &clearance::narrow_phase::Separation, epsilon: 
     let [a, b] = &pair.shapes;
     let goal = asked(GUMBEL, epsilon);
     let again = crate::derivative_pairs::goal();
-    clearance::narrow_phase::derivatives(b, a, &pair.at[1], &pair.at[0], &found, &goal, &again).unwrap()
+    derivatives(b, a, &pair.at[1], &pair.at[0], &found, &goal, &again).unwrap()
 }
 
 fn ellipsoids() -> Placed {
@@ -338,4 +342,37 @@ fn check_envelope(told: &[f64; 6], body: usize, at: &Placement, witness: Vec3, n
         assert!((told[axis] - sign * normal[axis]).abs() < 1e-12);
         assert!((told[axis + 3] - sign * moment[axis]).abs() < 1e-12);
     }
+}
+
+/// Run it with `--release -- --ignored --nocapture`: what a distance costs, and what smoothing by softmax adds.
+#[test]
+#[ignore = "a measurement, of optimised builds"]
+fn softmax_of_hulls_of_250_corners_costs_at_most_four_distances() {
+    let mut random = Random(30);
+    let pairs: Vec<Placed> = (0..300)
+        .filter_map(|_| {
+            let shapes = [hull(&mut random, 250), hull(&mut random, 250)];
+            Placed::new(&mut random, shapes, 0.1)
+        })
+        .collect();
+    let least = |work: &dyn Fn(&Placed)| {
+        let once = || {
+            let start = std::time::Instant::now();
+            pairs.iter().for_each(work);
+            start.elapsed().as_secs_f64() * 1e9 / pairs.len() as f64
+        };
+        (0..20).map(|_| once()).fold(f64::INFINITY, f64::min)
+    };
+    let told = asked(GUMBEL, 0.1);
+    let ask = |pair: &Placed| {
+        let ([a, b], [at_a, at_b]) = (&pair.shapes, &pair.at);
+        separation(a, b, at_a, at_b, &Goal::penetration()).unwrap()
+    };
+    let distance = least(&|pair| _ = black_box(ask(pair)));
+    let both = least(&|pair| {
+        let ([a, b], [at_a, at_b]) = (&pair.shapes, &pair.at);
+        _ = black_box(derivatives(a, b, at_a, at_b, &ask(pair), &told, &Goal::penetration()).unwrap());
+    });
+    println!("{} pairs: a distance {distance:.0} ns, with derivatives {both:.0} ns", pairs.len());
+    assert!(both - distance <= 4.0 * distance);
 }

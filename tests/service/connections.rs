@@ -36,7 +36,7 @@ async fn crowd(door: &impl Door) {
 fn endless_question() -> v1::DistanceRequest {
     let mut question = distance(vec![all_pairs(); 1000]);
     question.context.as_mut().unwrap().wants =
-        Some(v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true });
+        Some(v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true, derivatives: true });
     question
 }
 
@@ -52,9 +52,10 @@ async fn the_socket_changes_not_a_byte() {
         add("ball", sphere(0.4), at(-0.3, 0.9, 0.1)),
     ];
     grpc.apply(apply(bodies.to_vec())).await.unwrap();
-    let wants = Some(v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true });
+    let wants = v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true, derivatives: false };
     let positions: Vec<f64> = (0..400).map(|i| f64::from(i % 29) * 0.1 - f64::from(i % 7)).collect();
     for form in [v1::AnswerForm::Items, v1::AnswerForm::Bulk] {
+        let wants = Some(v1::Wants { derivatives: form == v1::AnswerForm::Items, ..wants });
         let context = Some(v1::Context { wants, answer_form: form.into(), ..context() });
         let question = v1::CheckStatesRequest { context: context.clone(), ..states(positions.clone()) };
         let over_socket = watched("states", grpc.check_states(question.clone())).await.unwrap();

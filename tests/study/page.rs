@@ -22,8 +22,19 @@ fn it_is_well_formed_with_a_section_and_a_reading_for_every_table() {
     let sections: Vec<Node> = document.descendants().filter(|node| node.has_tag_name("section")).collect();
     let sections: Vec<Node> = sections.into_iter().filter(|section| section.attribute("class").is_none()).collect();
     let names: BTreeSet<&str> = sections.iter().filter_map(|section| section.attribute("id")).collect();
-    let expected =
-        ["distance", "outputs", "precision", "penetration", "geometry", "motion", "broad_phase", "batches", "lecture"];
+    let expected = [
+        "distance",
+        "outputs",
+        "precision",
+        "penetration",
+        "geometry",
+        "motion",
+        "broad_phase",
+        "batches",
+        "lecture",
+        "derivatives",
+        "alignment",
+    ];
     assert_eq!(names, expected.into());
     for section in sections {
         let name = section.attribute("id").unwrap();

@@ -9,6 +9,11 @@ Question& Question::want(Want wanted) {
   return *this;
 }
 
+Question& Question::derivatives(v1::DerivativeOptions options) {
+  *context_.mutable_derivatives() = std::move(options);
+  return *this;
+}
+
 Question& Question::margin(double metres) {
   context_.set_margin(metres);
   return *this;

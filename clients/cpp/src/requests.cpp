@@ -57,6 +57,7 @@ v1::Context Scene::context(const Question& question, Want by_default, v1::Answer
   v1::Context context = question.context_;
   context.set_scene(name_);
   if (question.want_ || !context.has_wants()) *context.mutable_wants() = wants_of(question.want_.value_or(by_default));
+  if (context.has_derivatives()) context.mutable_wants()->set_derivatives(true);
   context.set_answer_form(form);
   return context;
 }

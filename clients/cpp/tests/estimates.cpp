@@ -123,10 +123,10 @@ TEST_CASE("an estimate is of the question as it is asked") {
   const auto every = at_tolerances({1e-3});
   const auto touching = scene.estimate_collide({}, every);
   CHECK(touching.items() == 1);
-  CHECK(touching.rows_size() == 5);
+  CHECK(touching.rows_size() == 6);
   const auto near = scene.estimate_clearance(2, subjects, every);
   CHECK(near.items() == 3);
-  CHECK(near.rows_size() == 4);
+  CHECK(near.rows_size() == 5);
 }
 
 TEST_CASE("estimates of a robot") {
@@ -136,10 +136,10 @@ TEST_CASE("estimates of a robot") {
   scene.apply({add_robot("crane", client.load_robot(described(crane))), add_body("wall", box(0.1, 0.5, 0.5), at(0, 1, 0))});
   const auto prices = at_tolerances({1e-2, 1e-3});
   const std::vector<std::array<double, 2>> states{{0, -0.5}, {half_pi, -0.5}, {-1, -0.5}};
-  // Verdict and pairs, which no tolerance changes; distance, witness, depth and patch.
+  // Verdict and pairs, which no tolerance changes; distance, witness, depth, patch and derivatives.
   const auto of = scene.estimate_states("crane", states, prices);
   CHECK(of.items() == 3);
-  REQUIRE(of.rows_size() == 2 + 4 * 2);
+  REQUIRE(of.rows_size() == 2 + 5 * 2);
   CHECK(of.rows(0).output() == v1::OUTPUT_VERDICT);
   CHECK_FALSE(of.rows(0).has_tolerance());
   CHECK(of.rows(0).verdicts().free() == 2);
@@ -148,7 +148,7 @@ TEST_CASE("estimates of a robot") {
   const std::vector<std::array<double, 2>> goals{{0.2, -0.5}, {1, -0.5}};
   const auto motions = scene.estimate_motions("crane", Rows(states[0].data(), 2, 2), goals, prices);
   CHECK(motions.items() == 2);
-  REQUIRE(motions.rows_size() == 5 * 2);
+  REQUIRE(motions.rows_size() == 6 * 2);
   CHECK(motions.rows(0).tolerance() == 1e-2);
   CHECK(motions.rows(0).verdicts().free() == 1);
   CHECK(motions.rows(0).verdicts().collision() == 1);
@@ -156,7 +156,7 @@ TEST_CASE("estimates of a robot") {
   const std::vector<std::array<double, 2>> waypoints{{-1, 0}, {0, 0}, {half_pi, 0}, {3, 0}};
   const auto path = scene.estimate_path("crane", waypoints, prices);
   CHECK(path.items() == 3);
-  CHECK(path.rows_size() == 5 * 2);
+  CHECK(path.rows_size() == 6 * 2);
   measured(path);
   CHECK_THROWS_AS(scene.estimate_states("crane", Rows(states[0].data(), 1, 4), prices), std::invalid_argument);
   CHECK_THROWS_AS(scene.estimate_motions("crane", states, goals, prices), std::invalid_argument);

@@ -37,6 +37,19 @@ TEST_CASE("distance and depth of balls") {
   const auto apart = scene.distance().items(0).nearest();
   tightly_around(2.0, apart.bracket());
   CHECK(std::abs(point_of(apart.witness().point_on_b())[0] - 2.5) < 1e-9);
+  CHECK(!apart.has_derivatives());
+  const auto exact = scene.distance({}, Question().derivatives()).items(0).nearest().derivatives();
+  CHECK(exact.method() == v1::DERIVATIVE_METHOD_EXACT);
+  CHECK(std::abs(exact.conditioning() - 3.0) < 1e-9);
+  REQUIRE(exact.of_b().signed_distance_size() == 6);
+  for (int column = 0; column < 6; ++column) {
+    CHECK(std::abs(exact.of_b().signed_distance(column) - (column == 0 ? 1.0 : 0.0)) < 1e-9);
+  }
+  CHECK(exact.of_a().normal_size() == 18);
+  v1::DerivativeOptions differences;
+  differences.set_method(v1::DERIVATIVE_METHOD_FINITE_DIFFERENCE);
+  const auto told = scene.distance({}, Question().derivatives(differences)).items(0).nearest().derivatives();
+  CHECK(told.method() == differences.method());
   const auto inside = subject(sphere(0.1), at(0.5, 0, 0));
   const auto probed = scene.distance({inside}, Question().want(Want::depth)).items(0);
   CHECK(probed.verdict() == v1::VERDICT_COLLISION);

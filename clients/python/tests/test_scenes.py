@@ -63,6 +63,48 @@ class Scenes(DaemonTest):
         self.assertIsNone(plain.pairs[0].patch)
         self.assertEqual(plain.cost.patch_corners, 0)
 
+    def test_derivatives_say_how_a_pair_changes(self) -> None:
+        self.scene.apply(
+            clearance.add_body("a", clearance.sphere(0.5)),
+            clearance.add_body("b", clearance.sphere(0.25), clearance.pose([2, 0, 0])),
+        )
+        (answer,) = self.scene.distance(derivatives="exact")
+        told = answer.nearest.derivatives
+        np.testing.assert_allclose(told.of_a.signed_distance, [-1, 0, 0, 0, 0, 0], atol=1e-9)
+        np.testing.assert_allclose(told.of_b.signed_distance, [1, 0, 0, 0, 0, 0], atol=1e-9)
+        across = np.zeros((3, 6))
+        across[1, 1] = across[2, 2] = 1
+        np.testing.assert_allclose(told.of_b.normal, across / 2, atol=1e-9)
+        np.testing.assert_allclose(told.of_b.point_on_a, across / 4, atol=1e-9)
+        self.assertAlmostEqual(told.conditioning, 2, places=9)
+        self.assertEqual((told.method, told.samples, told.is_valid, told.joints.shape), ("exact", 0, True, (0,)))
+        (plain,) = self.scene.distance()
+        self.assertIsNone(plain.nearest.derivatives)
+        counters = (plain.cost.derivative_separations, plain.cost.derivative_supports, plain.cost.derivative_corners)
+        self.assertEqual(counters, (0, 0, 0))
+
+    def test_random_derivatives_are_reproduced_by_their_seed(self) -> None:
+        self.scene.apply(
+            clearance.add_body("a", clearance.box([0.5, 0.5, 0.5])),
+            clearance.add_body("b", clearance.box([0.2, 0.3, 0.4]), clearance.pose([1.5, 0.1, 0.2])),
+        )
+
+        def sampled(seed: int) -> clearance.PairDerivatives:
+            options = clearance.derivatives("smoothed_0", epsilon=0.1, samples=16, seed=seed)
+            (pair,) = self.scene.clearance(2.0, derivatives=options)[0].pairs
+            return pair.derivatives
+
+        first = sampled(7)
+        self.assertEqual((first.method, first.epsilon, first.samples, first.seed), ("smoothed_0", 0.1, 16, 7))
+        self.assertTrue(np.isnan(first.conditioning))
+        np.testing.assert_array_equal(sampled(7).of_b.point_on_b, first.of_b.point_on_b)
+        self.assertFalse(np.array_equal(sampled(8).of_b.point_on_b, first.of_b.point_on_b))
+        with self.assertRaisesRegex(ValueError, "derivatives: is 'guessed', known are exact, exact_cell, "):
+            self.scene.distance(derivatives="guessed")
+        with self.assertRaises(clearance.InvalidRequest) as refused:
+            self.scene.distance(derivatives=clearance.derivatives(samples=0))
+        self.assertEqual(refused.exception.field, "context.derivatives.samples")
+
     def test_what_is_declared_is_all_that_may_be_asked(self) -> None:
         crate, shelf = clearance.group("crates"), clearance.group("shelves")
         self.scene.apply(

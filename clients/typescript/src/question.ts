@@ -20,6 +20,8 @@ export type Call = Pick<CallOptions, "timeoutMs" | "signal">;
 export interface Question extends Call {
   /** In place of what the method would want. */
   want?: Want;
+  /** How pairs that have points and normals change when their bodies move, as well; `{}`: exact. */
+  derivatives?: MessageInitShape<typeof v1.DerivativeOptionsSchema>;
   /** Metres: a pair apart but nearer than this is MARGIN. */
   margin?: number;
   /** Metres: pairs farther than this need no distance. */
@@ -51,7 +53,15 @@ export function contextOf(scene: string, question: Question, byDefault: Want, mo
     ...question.context,
     ...more,
     scene,
-    wants: { distance: want !== "verdict", depth: want === "depth" || points, witness: points, patch: want === "patch", ...more.wants },
+    wants: {
+      distance: want !== "verdict",
+      depth: want === "depth" || points,
+      witness: points,
+      patch: want === "patch",
+      derivatives: question.derivatives !== undefined,
+      ...more.wants,
+    },
+    derivatives: question.derivatives,
     margin: question.margin,
     cutOff: question.cutOff,
     timeBudget: question.timeBudget,

@@ -56,9 +56,9 @@ test("an estimate is of the question as it is asked", async (t) => {
   assert.equal((await counts({ context: { solver: v1.Solver.SAT } }))?.invalidInput, 3n);
   // Each question has its own outputs; without subjects all pairs are one item.
   const touching = await scene.estimateCollide([], { tolerances });
-  assert.deepEqual([touching.items, touching.rows.length], [1n, 5]);
+  assert.deepEqual([touching.items, touching.rows.length], [1n, 6]);
   const near = await scene.estimateClearance(2, CONES, { tolerances });
-  assert.deepEqual([near.items, near.rows.length], [3n, 4]);
+  assert.deepEqual([near.items, near.rows.length], [3n, 5]);
 });
 
 test("estimates of a robot", async (t) => {
@@ -68,16 +68,16 @@ test("estimates of a robot", async (t) => {
   await scene.apply([addRobot("crane", robot), addBody("wall", box([0.1, 0.5, 0.5]), at(0, 1, 0))]);
   const prices = { tolerances: [1e-2, 1e-3] };
   const states = [[0, -0.5], [Math.PI / 2, -0.5], [-1, -0.5]];
-  // Verdict and pairs, which no tolerance changes; distance, witness, depth and patch.
+  // Verdict and pairs, which no tolerance changes; distance, witness, depth, patch and derivatives.
   const of = await scene.estimateStates("crane", states, prices);
-  assert.deepEqual([of.items, of.rows.length], [3n, 2 + 4 * 2]);
+  assert.deepEqual([of.items, of.rows.length], [3n, 2 + 5 * 2]);
   assert.deepEqual([of.rows[0]?.output, of.rows[0]?.tolerance], [v1.Output.VERDICT, undefined]);
   assert.deepEqual([of.rows[0]?.verdicts?.free, of.rows[0]?.verdicts?.collision], [2n, 1n]);
   const motions = await scene.estimateMotions("crane", states.slice(0, 2), [[0.2, -0.5], [1, -0.5]], prices);
-  assert.deepEqual([motions.items, motions.rows.length, motions.rows[0]?.tolerance], [2n, 5 * 2, 1e-2]);
+  assert.deepEqual([motions.items, motions.rows.length, motions.rows[0]?.tolerance], [2n, 6 * 2, 1e-2]);
   assert.deepEqual([motions.rows[0]?.verdicts?.free, motions.rows[0]?.verdicts?.collision], [1n, 1n]);
   const path = await scene.estimatePath("crane", [[-1, 0], [0, 0], [Math.PI / 2, 0], [3, 0]], prices);
-  assert.deepEqual([path.items, path.rows.length], [3n, 5 * 2]);
+  assert.deepEqual([path.items, path.rows.length], [3n, 6 * 2]);
   for (const told of [of, motions, path]) measured(told);
   await assert.rejects(scene.estimateStates("crane", [[0, 0], [0]], prices), RangeError);
   await assert.rejects(scene.estimateStates("crane", [[0, 0, 0, 0]], prices), RangeError);

@@ -63,6 +63,14 @@ test("distance and depth of balls", async (t) => {
   const apart = (await scene.distance()).items[0]?.nearest;
   tightlyAround(2, apart?.bracket);
   assert.ok(Math.abs(pointOf(apart?.witness?.pointOnB)[0] - 2.5) < 1e-9);
+  assert.equal(apart?.derivatives, undefined);
+  const exact = (await scene.distance([], { derivatives: {} })).items[0]?.nearest?.derivatives;
+  assert.equal(exact?.method, v1.DerivativeMethod.EXACT);
+  assert.deepEqual([exact.ofB?.signedDistance.map((x) => Math.round(x) + 0), exact.ofB?.normal.length], [[1, 0, 0, 0, 0, 0], 18]);
+  assert.ok(Math.abs(exact.conditioning - 3) < 1e-9);
+  const differences = { method: v1.DerivativeMethod.FINITE_DIFFERENCE };
+  const told = (await scene.distance([], { derivatives: differences })).items[0]?.nearest?.derivatives;
+  assert.deepEqual([told?.method, told?.conditioning], [differences.method, NaN]);
   const inside = { shape: sphere(0.1), pose: at(0.5, 0, 0) };
   const [probed] = (await scene.distance([inside], { want: "depth" })).items;
   assert.equal(probed?.verdict, v1.Verdict.COLLISION);

@@ -29,7 +29,8 @@ pub(super) fn epsilon(goal: &DerivativeGoal, size: f64, signed_distance: f64) ->
 ///
 /// With each cost epsilon is multiplied by cost / cost before, but by no less than [`Self::FASTEST`], as one lucky step tells little of how
 /// near the end is, and by no more than [`Self::SLOWEST`], as a cost that stays where it is may do so because of the smoothing itself. It
-/// never falls below its floor.
+/// never falls below its floor. The bounds and the default start are those that led the most contacts of hulls to their targets in the study's
+/// optimisation (`clearance study --only alignment`): when epsilon may halve in a step, two thirds of those per unit of time are lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EpsilonSchedule {
     epsilon: f64,
@@ -39,10 +40,10 @@ pub struct EpsilonSchedule {
 
 impl EpsilonSchedule {
     /// It shrinks by no more than this in a step.
-    pub const FASTEST: f64 = 0.5;
+    pub const FASTEST: f64 = 0.95;
 
     /// It shrinks by this at least.
-    pub const SLOWEST: f64 = 0.97;
+    pub const SLOWEST: f64 = 0.995;
 
     /// From `start` (0.1 to 0.3 of the size serves most) down to `floor`. A floor above the start is the start.
     #[must_use]
@@ -71,9 +72,9 @@ impl EpsilonSchedule {
 }
 
 impl Default for EpsilonSchedule {
-    /// From 0.2 to 0.001.
+    /// From 0.3 to 0.001.
     fn default() -> Self {
-        Self::new(0.2, 1e-3)
+        Self::new(0.3, 1e-3)
     }
 }
 
@@ -107,12 +108,12 @@ mod tests {
     fn a_schedule_shrinks_by_the_progress_of_the_cost_within_its_bounds() {
         let mut schedule = EpsilonSchedule::new(0.2, 0.01);
         assert_eq!(schedule.progressed(8.0), 0.2);
-        assert_eq!(schedule.progressed(6.0), 0.2 * 0.75);
-        assert_eq!(schedule.progressed(0.6), 0.2 * 0.75 * EpsilonSchedule::FASTEST);
+        assert_eq!(schedule.progressed(7.84), 0.2 * 0.98);
+        assert_eq!(schedule.progressed(0.6), 0.2 * 0.98 * EpsilonSchedule::FASTEST);
         let stalled = schedule.epsilon();
         assert_eq!(schedule.progressed(0.7), stalled * EpsilonSchedule::SLOWEST);
         assert_eq!(schedule.progressed(f64::NAN), stalled * EpsilonSchedule::SLOWEST);
-        for _ in 0..200 {
+        for _ in 0..2000 {
             schedule.progressed(0.0);
         }
         assert_eq!(schedule.epsilon(), 0.01);

@@ -12,7 +12,7 @@
 use super::super::goal::{Accuracy, Goal};
 use super::super::outcome::Separation;
 use super::super::patch::TouchingPiece;
-use super::derivatives::{DerivativeMethod, Derivatives, NoDerivatives};
+use super::derivatives::{Derivatives, NoDerivatives};
 use super::moved_pair::{MovedPair, Pair, Quantities, core_radius, moved, quantities, radius, size};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::{Placement, Vec3, length};
@@ -30,14 +30,18 @@ const UNKNOWN_TURN: f64 = 0.1;
 const ASKED: u64 = 25;
 
 /// Central differences in the 24 places around a pair.
-pub(super) fn differences(pair: Pair, found: &Separation, again: &Goal) -> Result<Derivatives, NoDerivatives> {
+pub(super) fn differences(
+    pair: Pair,
+    found: &Separation,
+    again: &Goal,
+    all: &mut Derivatives,
+) -> Result<(), NoDerivatives> {
     let places = MovedPair::new(pair, again, Accuracy { absolute: 0.0, relative: 0.0 });
     let [at_a, at_b] = pair.map(|(_, at)| at);
     let middle = places.ask([at_a, at_b])?;
     let size = smaller_piece(pair, found);
     let error = error(&[at_a, at_b], &middle, size);
     let part = libm::cbrt(error).min(LONGEST);
-    let mut all = Derivatives::unknown(DerivativeMethod::FiniteDifference);
     all.epsilon = part;
     all.residual = part * part + error / part;
     all.cost.separations = ASKED;
@@ -66,7 +70,7 @@ pub(super) fn differences(pair: Pair, found: &Separation, again: &Goal) -> Resul
     all.on_border = kinks.is_border || kinks.is_leap;
     // Errors as large as derivatives are leave nothing.
     all.is_valid = !kinks.is_leap && all.residual < 1.0 && all.are_finite();
-    Ok(all)
+    Ok(())
 }
 
 /// The size of the smaller of the pieces that touch; of the whole shapes, where no piece is told.

@@ -2,7 +2,7 @@
 
 use super::super::outcome::Separation;
 use super::super::patch::{NoPatch, TouchingPiece, across, is_wall};
-use super::derivatives::{DerivativeCost, DerivativeMethod, Derivatives, NoDerivatives};
+use super::derivatives::{DerivativeMethod, Derivatives, NoDerivatives};
 use super::response::Response;
 use super::side::{Side, tilt};
 use super::smooth_pair::polished;
@@ -13,7 +13,8 @@ pub(super) fn exact(
     [(a, at_a), (b, at_b)]: [(&Shape, &Placement); 2],
     found: &Separation,
     may_polish: bool,
-) -> Result<Derivatives, NoDerivatives> {
+    told: &mut Derivatives,
+) -> Result<(), NoDerivatives> {
     let piece_a = TouchingPiece::of(a, found.subshape_a, at_a, found.point_on_a)?;
     let piece_b = TouchingPiece::of(b, found.subshape_b, at_b, found.point_on_b)?;
     let arms = [found.point_on_a - at_a.translation, found.point_on_b - at_b.translation];
@@ -23,22 +24,20 @@ pub(super) fn exact(
     if let Some(at) = smooth {
         let response = Response::smooth(at.normal, at.axes, at.signed_distance, at.radii);
         let arms = [arms[0] + at.points[0], arms[1] + at.points[1] - between];
-        let mut told = Derivatives { residual: at.residual, ..Derivatives::unknown(DerivativeMethod::Exact) };
-        response.tell(arms, &mut told);
-        return Ok(told);
+        response.tell(arms, told);
+        told.residual = at.residual;
+        return Ok(());
     }
     if is_wall(&piece_a.core) && is_wall(&piece_b.core) {
         return Err(NoPatch::Unbounded { a: a.kind(), b: b.kind() }.into());
     }
     let (axes, tilt) = (across(normal), tilt(found.normal_error));
     let [x, y] = axes;
-    let mut cost = DerivativeCost::default();
-    let mut side = |piece: &TouchingPiece, up| Side::of(piece, [x, y, up], tilt, &mut cost);
+    let mut side = |piece: &TouchingPiece, up| Side::of(piece, [x, y, up], tilt, &mut told.cost);
     let sides = [side(&piece_a, normal), side(&piece_b, -normal)];
     let response = Response::new(normal, axes, found.signed_distance, [&sides[0], &sides[1]]);
-    let unknown = Derivatives::unknown(DerivativeMethod::ExactCell);
-    let mut told = Derivatives { residual: found.point_error, cost, ..unknown };
-    response.tell(arms, &mut told);
-    told.on_border = response.is_shared || sides.iter().any(|side| side.on_border);
-    Ok(told)
+    response.tell(arms, told);
+    (told.method, told.residual) = (DerivativeMethod::ExactCell, found.point_error);
+    told.on_border = response.is_shared || sides[0].on_border || sides[1].on_border;
+    Ok(())
 }

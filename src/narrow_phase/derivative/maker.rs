@@ -29,15 +29,17 @@ pub fn derivatives(
 ) -> Result<Derivatives, NoDerivatives> {
     goal.check()?;
     let pair = [(a, at_a), (b, at_b)];
-    let mut made = match goal.method {
-        DerivativeMethod::Exact => exact(pair, found, true),
-        DerivativeMethod::ExactCell => exact(pair, found, false),
-        DerivativeMethod::FiniteDifference => differences(pair, found, again),
-        DerivativeMethod::Smoothed0 => smoothed_places(pair, found, goal, again),
+    // Filled where it is: a thousand bytes are not handed from one to the other.
+    let mut told = Derivatives::unknown(goal.method);
+    match goal.method {
+        DerivativeMethod::Exact => exact(pair, found, true, &mut told),
+        DerivativeMethod::ExactCell => exact(pair, found, false, &mut told),
+        DerivativeMethod::FiniteDifference => differences(pair, found, again, &mut told),
+        DerivativeMethod::Smoothed0 => smoothed_places(pair, found, goal, again, &mut told),
         DerivativeMethod::Smoothed1Gaussian | DerivativeMethod::Smoothed1Gumbel => {
-            smoothed_supports(pair, found, goal, again)
+            smoothed_supports(pair, found, goal, again, &mut told)
         }
     }?;
-    made.is_contested = is_contested(pair, found, again, &mut made.cost)?;
-    Ok(made)
+    told.is_contested = is_contested(pair, found, again, &mut told.cost)?;
+    Ok(told)
 }

@@ -148,22 +148,26 @@ impl Response {
         }
         let outward = along(self.normal);
         let distance = [outward[0] * sign, outward[1] * sign];
-        all.signed_distance[body] = std::array::from_fn(|k| distance[k / 3][k % 3]);
-        let none = [Vec3::zeros(); 2];
-        self.whole(&dn, none, &mut all.normal[body]);
-        self.whole(&on_a, if body == 0 { outward } else { none }, &mut all.point_on_a[body]);
-        self.whole(&on_b, if body == 0 { none } else { outward }, &mut all.point_on_b[body]);
+        let [v, w] = distance;
+        all.signed_distance[body] = [v.x, v.y, v.z, w.x, w.y, w.z];
+        self.whole(&dn, &mut all.normal[body]);
+        self.whole(&on_a, &mut all.point_on_a[body]);
+        self.whole(&on_b, &mut all.point_on_b[body]);
+        // Along the normal only the body's own witness moves with it.
+        let own = if body == 0 { &mut all.point_on_a[0] } else { &mut all.point_on_b[1] };
+        for k in 0..6 {
+            let along = outward[k / 3][k % 3];
+            (0..3).for_each(|row| own[(row, k)] += self.normal[row] * along);
+        }
     }
 
-    /// In the frame of both placements: what is in the plane, and what is along the normal.
-    #[inline]
-    fn whole(&self, plane: &Plane, along: [Vec3; 2], into: &mut TwistMatrix) {
-        let ([x, y], n) = (self.axes, self.normal);
+    /// In the frame of both placements.
+    #[inline(always)]
+    fn whole(&self, plane: &Plane, into: &mut TwistMatrix) {
+        let [x, y] = self.axes;
         for k in 0..6 {
-            let (u, v, w) = (plane[(0, k)], plane[(1, k)], along[k / 3][k % 3]);
-            for row in 0..3 {
-                into[(row, k)] = x[row] * u + y[row] * v + n[row] * w;
-            }
+            let (u, v) = (plane[(0, k)], plane[(1, k)]);
+            (0..3).for_each(|row| into[(row, k)] = x[row] * u + y[row] * v);
         }
     }
 }
@@ -175,7 +179,7 @@ fn rows([vx, wx]: [Vec3; 2], [vy, wy]: [Vec3; 2]) -> Plane {
 
 /// Zero where there is none: then the least eigenvalue says so.
 #[inline]
-fn inverted(m: &Mat2) -> Mat2 {
+pub(super) fn inverted(m: &Mat2) -> Mat2 {
     let determinant = m.m11 * m.m22 - m.m12 * m.m21;
     if determinant == 0.0 { Mat2::zeros() } else { Mat2::new(m.m22, -m.m12, -m.m21, m.m11) / determinant }
 }

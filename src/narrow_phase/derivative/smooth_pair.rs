@@ -6,6 +6,7 @@
 
 use super::super::patch::TouchingPiece;
 use super::super::smooth::tangents;
+use super::response::inverted;
 use super::side::{Mat2, Vec2};
 use crate::geometry::tolerance::UNIT_ROUNDOFF;
 use crate::geometry::{Core, Vec3};
@@ -14,7 +15,7 @@ use crate::geometry::{Core, Vec3};
 const MAX_STEPS: usize = 8;
 
 /// Tensors serve until the normal has turned by more than this, radians: their own error is in proportion.
-const STALE: f64 = 1e-11;
+const STALE: f64 = 1e-9;
 
 /// A step that turns the normal by more than this leaves what the separation found; radians.
 const LARGEST_STEP: f64 = 0.3;
@@ -87,6 +88,14 @@ impl<'a> Smooth<'a> {
         Supported { at, height, on_core }
     }
 
+    /// No change of the tensor is larger than twice this times the turn of the direction: the third derivative of |A d| along tangents u of length
+    /// one is -3 (p . u) (u . H u) / h, with |p| and h between the least and the greatest radius and H up to the greatest's square by h.
+    #[inline]
+    fn bend_of_tensor(&self) -> f64 {
+        let (least, greatest) = (self.radii.min(), self.radii.max());
+        if least > 0.0 { 1.5 * greatest * greatest * greatest / (least * least) } else { 0.0 }
+    }
+
     /// Its Hessian there, (A^2 - p p^T) / h, and the swept radius, for two axes across the direction.
     #[inline]
     fn tensor(&self, there: &Supported, axes: [Vec3; 2]) -> Mat2 {
@@ -94,7 +103,8 @@ impl<'a> Smooth<'a> {
         if there.height == 0.0 {
             return Mat2::new(swept, 0.0, 0.0, swept);
         }
-        let [x, y] = axes.map(|axis| self.piece.rotation.tr_mul(&axis));
+        let rotation = &self.piece.rotation;
+        let (x, y) = (rotation.tr_mul(&axes[0]), rotation.tr_mul(&axes[1]));
         let (ax, ay) = (self.radii.component_mul(&x), self.radii.component_mul(&y));
         let (px, py) = (there.on_core.dot(&x), there.on_core.dot(&y));
         let share = 1.0 / there.height;
@@ -113,6 +123,22 @@ struct Tried {
     residual: f64,
 }
 
+impl Tried {
+    /// Goes on by a step so small that nothing but what is of first order counts.
+    fn follow(&mut self, turn: Vec3, bent: [Vec2; 2], axes: [Vec3; 2], residual: f64) {
+        self.normal = (self.normal + turn).normalize();
+        self.supports[0].at += axes[0] * bent[0].x + axes[1] * bent[0].y;
+        self.supports[1].at -= axes[0] * bent[1].x + axes[1] * bent[1].y;
+        self.residual = residual;
+    }
+}
+
+/// What of a unit vector is across another one that is nearly perpendicular to it; as long, to second order.
+#[inline]
+fn across(axis: Vec3, normal: Vec3) -> Vec3 {
+    axis - normal * normal.dot(&axis)
+}
+
 /// From the normal of a separation, and its vector from the witness on A to that on B. None where a piece is not smooth, or where steps lead
 /// away.
 pub(super) fn polished(a: &TouchingPiece, b: &TouchingPiece, normal: Vec3, between: Vec3) -> Option<Polished> {
@@ -126,35 +152,46 @@ pub(super) fn polished(a: &TouchingPiece, b: &TouchingPiece, normal: Vec3, betwe
     };
     let bent = |tried: &Tried| {
         let axes = tangents(tried.normal);
-        (axes, [0, 1].map(|side| pair[side].tensor(&tried.supports[side], axes)))
+        (axes, [pair[0].tensor(&tried.supports[0], axes), pair[1].tensor(&tried.supports[1], axes)])
     };
-    let size = [a, b].map(|piece| piece.position.norm() + piece.swept_radius).iter().sum::<f64>();
+    let size = a.position.norm() + a.swept_radius + b.position.norm() + b.swept_radius;
+    let rounding = 2.0 * UNIT_ROUNDOFF * size;
     let mut best = at(normal);
     let (mut axes, mut radii) = bent(&best);
     let mut turned = 0.0;
     for _ in 0..MAX_STEPS {
-        if best.residual <= 2.0 * UNIT_ROUNDOFF * size {
+        if best.residual <= rounding {
             break;
         }
         if turned > STALE {
             ((axes, radii), turned) = (bent(&best), 0.0);
         }
         let bend = Mat2::identity() * best.signed_distance + radii[0] + radii[1];
-        let step = bend.try_inverse()? * Vec2::new(axes[0].dot(&best.off), axes[1].dot(&best.off));
+        let step = inverted(&bend) * Vec2::new(axes[0].dot(&best.off), axes[1].dot(&best.off));
         let length = step.norm();
         if length > LARGEST_STEP {
             return None;
         }
-        let next = at((best.normal + axes[0] * step.x + axes[1] * step.y).normalize());
+        let turn = axes[0] * step.x + axes[1] * step.y;
+        // What such a step leaves is of the second order. Where that is below rounding, the points may follow the tensors, too.
+        let left = length * length * (pair[0].bend_of_tensor() + pair[1].bend_of_tensor() + best.signed_distance.abs());
+        if left <= rounding {
+            best.follow(turn, [radii[0] * step, radii[1] * step], axes, left + rounding);
+            turned += length;
+            break;
+        }
+        let next = at((best.normal + turn).normalize());
         if next.residual >= best.residual {
             break;
         }
         turned += length;
         best = next;
     }
-    // Axes have to be across the very normal; tensors in them are off by no more than it has turned.
-    if turned > 0.0 {
+    if turned > STALE {
         (axes, radii) = bent(&best);
+    } else if turned > 0.0 {
+        // They have to be across the very normal; tensors in them are off by no more than it has turned.
+        axes = [across(axes[0], best.normal), across(axes[1], best.normal)];
     }
     let points = [best.supports[0].at, between + best.supports[1].at];
     let Tried { normal, signed_distance, residual, .. } = best;

@@ -18,7 +18,7 @@ use super::super::goal::{Accuracy, Goal};
 use super::super::outcome::Separation;
 use super::adaptive_epsilon::epsilon;
 use super::counter_random::CounterRandom;
-use super::derivatives::{DerivativeGoal, DerivativeMethod, Derivatives, NoDerivatives};
+use super::derivatives::{DerivativeGoal, Derivatives, NoDerivatives};
 use super::moments::Moments;
 use super::moved_pair::{MovedPair, Pair, moved, quantities, radius, size};
 use crate::geometry::tolerance::{DEFAULT_RELATIVE_TOLERANCE, UNIT_ROUNDOFF};
@@ -36,7 +36,8 @@ pub(super) fn smoothed_places(
     found: &Separation,
     goal: &DerivativeGoal,
     again: &Goal,
-) -> Result<Derivatives, NoDerivatives> {
+    all: &mut Derivatives,
+) -> Result<(), NoDerivatives> {
     let size = size(pair.map(|(shape, _)| shape.bounds().map(radius)), found.signed_distance);
     let epsilon = epsilon(goal, size, found.signed_distance);
     let reach = epsilon * size;
@@ -58,7 +59,6 @@ pub(super) fn smoothed_places(
         let per_unit = |column: usize| z[column] / if column % 6 < 3 { reach } else { epsilon };
         moments.add(&SMatrix::from_fn(|row, column| half[row] * per_unit(column)));
     }
-    let mut all = Derivatives::unknown(DerivativeMethod::Smoothed0);
     for column in 0..12 {
         all.set_quantities(column / 6, column % 6, &moments.mean().column(column).into_owned());
     }
@@ -70,7 +70,7 @@ pub(super) fn smoothed_places(
     let is_above_rounding = reach > FEWEST_ROUNDINGS * UNIT_ROUNDOFF * extent;
     all.is_valid = is_above_rounding && all.are_finite();
     all.cost.separations = 2 * u64::from(goal.samples);
-    Ok(all)
+    Ok(())
 }
 
 /// Six blocks of two.

@@ -24,7 +24,8 @@ pub(super) fn smoothed_supports(
     found: &Separation,
     goal: &DerivativeGoal,
     again: &Goal,
-) -> Result<Derivatives, NoDerivatives> {
+    all: &mut Derivatives,
+) -> Result<(), NoDerivatives> {
     let [(a, at_a), (b, at_b)] = pair;
     let piece_a = TouchingPiece::of(a, found.subshape_a, at_a, found.point_on_a)?;
     let piece_b = TouchingPiece::of(b, found.subshape_b, at_b, found.point_on_b)?;
@@ -40,18 +41,17 @@ pub(super) fn smoothed_supports(
         random: CounterRandom::new(goal.seed, goal.stream),
         again,
     };
-    let mut all = Derivatives::unknown(goal.method);
     let [x, y] = across(found.normal);
     let one = smoothing.side(&piece_a, [x, y, found.normal], 0, &mut all.cost)?;
     let other = smoothing.side(&piece_b, [x, y, -found.normal], 1, &mut all.cost)?;
     let response = Response::new(found.normal, [x, y], found.signed_distance, [&one.side, &other.side]);
     let arms = [found.point_on_a - at_a.translation, found.point_on_b - at_b.translation];
-    response.tell(arms, &mut all);
+    response.tell(arms, all);
     all.residual = one.error + other.error;
     all.epsilon = smoothing.epsilon;
     if one.is_sampled || other.is_sampled {
         (all.samples, all.seed) = (goal.samples, goal.seed);
     }
     all.is_valid &= all.are_finite();
-    Ok(all)
+    Ok(())
 }

@@ -141,7 +141,19 @@ fn cut(text: &str) -> &str {
 
 fn framed(frame: &Frame, cost: Cost) -> ResponseHeader {
     // No batch has contact patches or derivatives.
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, .. } = cost;
+    let Cost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners: _,
+        patch_cuts: _,
+        derivative_separations: _,
+        derivative_supports: _,
+        derivative_corners: _,
+    } = cost;
     ResponseHeader {
         nonce: frame.nonce,
         question: frame.question,

@@ -122,16 +122,19 @@ pub(super) const WANTS_SIDES: u32 = 16;
 /// The bit that would ask for contact patches: a batch has no columns for them, and is refused by name.
 pub(super) const WANTS_PATCH: u32 = 32;
 
+/// The bit that would ask for derivatives: as for contact patches.
+pub(super) const WANTS_DERIVATIVES: u32 = 64;
+
 pub(super) fn wants(bits: u32) -> Option<Wants> {
     let has = |bit| bits & bit != 0;
-    let known = bits < 2 * WANTS_PATCH;
+    let known = bits < 2 * WANTS_DERIVATIVES;
     known.then(|| Wants {
         distance: has(1),
         witness: has(2),
         depth: has(4),
         pairs: has(8),
         patch: has(WANTS_PATCH),
-        derivatives: false,
+        derivatives: has(WANTS_DERIVATIVES),
     })
 }
 
@@ -142,6 +145,7 @@ pub(super) fn wants_bits(wants: Wants) -> u32 {
         | bit(wants.depth, 4)
         | bit(wants.pairs, 8)
         | bit(wants.patch, WANTS_PATCH)
+        | bit(wants.derivatives, WANTS_DERIVATIVES)
 }
 
 #[cfg(all(test, feature = "grpc"))]
@@ -206,6 +210,6 @@ mod tests {
     #[test]
     fn wants_are_bits_and_unknown_bits_are_refused() {
         assert_eq!(wants(wants_bits(Wants::ALL)), Some(Wants::ALL));
-        assert_eq!((wants(WANTS_SIDES), wants(64)), (Some(Wants::VERDICT), None));
+        assert_eq!((wants(WANTS_SIDES), wants(128)), (Some(Wants::VERDICT), None));
     }
 }

@@ -304,7 +304,7 @@ mod tests {
 
     fn context() -> Context {
         Context {
-            wants: Wants { patch: false, ..Wants::ALL },
+            wants: Wants { patch: false, derivatives: false, ..Wants::ALL },
             margin: 0.25,
             cut_off: Some(2.0),
             filter: Filter {

@@ -243,9 +243,11 @@ impl Decoder<'_> {
             (accuracy.absolute, accuracy.relative) = (header.accuracy_absolute, header.accuracy_relative);
         }
         let max_pairs = header.max_pairs as usize;
-        if header.wants & codes::WANTS_PATCH != 0 {
-            let problem = "asks for contact patches, which a batch has no columns for: call the rpc by its name";
-            return Err(ServiceError::invalid("context.wants", problem));
+        for (bit, asked) in [(codes::WANTS_PATCH, "contact patches"), (codes::WANTS_DERIVATIVES, "derivatives")] {
+            if header.wants & bit != 0 {
+                let problem = format!("asks for {asked}, which a batch has no columns for: call the rpc by its name");
+                return Err(ServiceError::invalid("context.wants", problem));
+            }
         }
         Ok(Context {
             wants: codes::wants(header.wants).ok_or_else(|| unknown("context.wants", header.wants))?,

@@ -23,6 +23,7 @@ through_doors_with_watches!(
     a_watch_can_begin_at_an_earlier_revision,
     long_lists_come_in_several_messages,
     points_of_contact_are_told_where_wanted,
+    derivatives_of_contacts_are_told_where_wanted,
     a_deleted_scene_ends_a_watch,
     watchers_are_counted,
     watches_take_no_overlays,
@@ -203,6 +204,26 @@ async fn points_of_contact_are_told_where_wanted(door: &impl Watches) {
     assert!((pair.witness.unwrap().normal.unwrap().x - 1.0).abs() < 1e-9);
 }
 
+async fn derivatives_of_contacts_are_told_where_wanted(door: &impl Watches) {
+    balls(door, &[0.0, 0.75]).await;
+    let wants = Some(v1::Wants { depth: true, derivatives: true, ..v1::Wants::default() });
+    let made = |options| {
+        let context = v1::Context { wants, derivatives: Some(options), ..context() };
+        v1::WatchContactsRequest { context: Some(context), ..watch() }
+    };
+    let mut watched = door.watch_contacts(made(v1::DerivativeOptions::default())).await.unwrap();
+    let first = watched.message().await.unwrap();
+    let told = first.events[0].pair.as_ref().unwrap().derivatives.as_ref().unwrap();
+    assert_eq!(told.method(), v1::DerivativeMethod::Exact);
+    for (column, number) in told.of_b.as_ref().unwrap().signed_distance.iter().enumerate() {
+        let expected = if column == 0 { 1.0 } else { 0.0 };
+        assert!((number - expected).abs() < 1e-9, "{told:?}");
+    }
+    let refusal = refused(door, made(v1::DerivativeOptions { samples: Some(10_001), ..Default::default() })).await;
+    assert_eq!((refusal.code, refusal.reason.as_str()), (Code::ResourceExhausted, "LIMIT_EXCEEDED"), "{refusal:?}");
+    assert!(refusal.message.starts_with("max_derivative_samples exceeded"), "{refusal:?}");
+}
+
 async fn a_deleted_scene_ends_a_watch(door: &impl Watches) {
     balls(door, &[0.0]).await;
     let mut watch = door.watch_contacts(watch()).await.unwrap();
@@ -274,6 +295,14 @@ async fn what_cannot_be_watched_is_refused_by_field(door: &impl Watches) {
         (with(v1::Context { time_budget: Some(1.0), ..context() }), Code::InvalidArgument, "context.time_budget"),
         (with(v1::Context { answer_form: 2, ..context() }), Code::InvalidArgument, "context.answer_form"),
         (with(v1::Context { solver: 99, ..context() }), Code::InvalidArgument, "context.solver"),
+        (
+            with(v1::Context {
+                derivatives: Some(v1::DerivativeOptions { method: 99, ..Default::default() }),
+                ..context()
+            }),
+            Code::InvalidArgument,
+            "context.derivatives.method",
+        ),
         (filter(v1::Filter { groups: vec!["nobody".to_owned()], ..v1::Filter::default() }), Code::NotFound, ""),
         (filter(v1::Filter { ignore: vec![named("nobody")], ..v1::Filter::default() }), Code::NotFound, ""),
         (filter(v1::Filter { ignore: vec![numbered(77)], ..v1::Filter::default() }), Code::NotFound, ""),

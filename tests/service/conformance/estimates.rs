@@ -129,15 +129,15 @@ async fn every_question_has_its_own_outputs(door: &impl Door) {
         subjects: Some(near),
         ..v1::ClearanceRequest::default()
     };
-    use v1::Output::{Depth, Distance, Pairs, Patch, Verdict, Witness};
+    use v1::Output::{Depth, Derivatives, Distance, Pairs, Patch, Verdict, Witness};
     // Items, outputs that no tolerance changes, and those that it does.
     let cases: [(Question, u64, &[v1::Output], &[v1::Output]); 6] = [
-        (Question::CheckStates(states_), 2, &[Verdict, Pairs], &[Distance, Witness, Depth, Patch]),
-        (Question::Collide(collide(cones())), BALLS, &[Pairs], &[Distance, Witness, Depth, Patch]),
-        (Question::Distance(distance(cones())), BALLS, &[], &[Pairs, Distance, Witness, Depth, Patch]),
-        (Question::CheckMotions(motions), 1, &[], &[Verdict, Distance, Witness, Depth, Patch]),
-        (Question::CheckPath(path), 2, &[], &[Verdict, Distance, Witness, Depth, Patch]),
-        (Question::Clearance(clearance), BALLS, &[], &[Distance, Witness, Depth, Patch]),
+        (Question::CheckStates(states_), 2, &[Verdict, Pairs], &[Distance, Witness, Depth, Patch, Derivatives]),
+        (Question::Collide(collide(cones())), BALLS, &[Pairs], &[Distance, Witness, Depth, Patch, Derivatives]),
+        (Question::Distance(distance(cones())), BALLS, &[], &[Pairs, Distance, Witness, Depth, Patch, Derivatives]),
+        (Question::CheckMotions(motions), 1, &[], &[Verdict, Distance, Witness, Depth, Patch, Derivatives]),
+        (Question::CheckPath(path), 2, &[], &[Verdict, Distance, Witness, Depth, Patch, Derivatives]),
+        (Question::Clearance(clearance), BALLS, &[], &[Distance, Witness, Depth, Patch, Derivatives]),
     ];
     for (question, items, without, with) in cases {
         let name = format!("{question:?}");
@@ -154,7 +154,7 @@ async fn every_question_has_its_own_outputs(door: &impl Door) {
     let told =
         door.estimate(v1::EstimateRequest { sample: Some(1), ..of(Question::Distance(distance(cones()))) }).await;
     let told = rows(&told.unwrap());
-    assert_eq!((told.len(), told[0], told[9]), (50, (Pairs, Some(1e-1)), (Pairs, Some(0.0))));
+    assert_eq!((told.len(), told[0], told[9]), (60, (Pairs, Some(1e-1)), (Pairs, Some(0.0))));
 }
 
 async fn outputs_that_are_not_declared_have_no_row(door: &impl Door) {
@@ -241,9 +241,20 @@ async fn what_cannot_be_estimated_is_named(door: &impl Door) {
     assert_eq!(door.estimate(nowhere).await.unwrap_err().code, Code::NotFound);
     let rows = v1::EstimateRequest { tolerances: vec![1e-3; 20], ..good() };
     assert_eq!(door.estimate(rows).await.unwrap_err().code, Code::ResourceExhausted);
+    // Samples count where derivatives are measured.
+    let many = || wrong(|asked| asked.context.as_mut().unwrap().derivatives = Some(samples(10_001)));
+    let refusal = door.estimate(many()).await.unwrap_err();
+    assert_eq!(refusal.code, Code::ResourceExhausted, "{refusal:?}");
+    assert!(refusal.message.starts_with("max_derivative_samples exceeded"), "{refusal:?}");
+    let depth = v1::EstimateRequest { outputs: outputs(&[v1::Output::Depth]), tolerances: vec![1e-3], ..many() };
+    assert_eq!(door.estimate(depth).await.unwrap().rows.len(), 1);
     // An infinite time is longer than the cap, and no error.
     let forever = v1::EstimateRequest { time: Some(f64::INFINITY), sample: Some(1), tolerances: vec![1e-3], ..good() };
     assert_eq!(door.estimate(forever).await.unwrap().end(), v1::EstimateEnd::Complete);
+}
+
+fn samples(samples: u32) -> v1::DerivativeOptions {
+    v1::DerivativeOptions { samples: Some(samples), ..v1::DerivativeOptions::default() }
 }
 
 async fn a_sample_is_capped_and_told(door: &impl Door) {

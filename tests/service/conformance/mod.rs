@@ -7,6 +7,7 @@ mod caps;
 mod casts;
 mod contacts;
 mod decompositions;
+mod derivatives;
 mod effects;
 mod estimates;
 mod fields;

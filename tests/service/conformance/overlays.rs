@@ -64,7 +64,7 @@ fn without_nodes(mut answer: v1::Answer) -> v1::Answer {
 }
 
 fn all_wants() -> v1::Wants {
-    v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true }
+    v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: true, derivatives: true }
 }
 
 async fn an_overlay_is_answered_as_if_it_were_applied_and_nobody_is_told(door: &impl Door) {

@@ -37,7 +37,8 @@ fn wanting(wants: v1::Wants) -> v1::CollideRequest {
     v1::CollideRequest { context: Some(context), ..collide(vec![all_pairs()]) }
 }
 
-const PATCH: v1::Wants = v1::Wants { distance: false, witness: false, depth: false, pairs: true, patch: true };
+const PATCH: v1::Wants =
+    v1::Wants { distance: false, witness: false, depth: false, pairs: true, patch: true, derivatives: false };
 
 async fn boxes_that_overlap_touch_in_four_points(door: &impl Door) {
     table(door).await;
@@ -63,7 +64,7 @@ async fn boxes_that_overlap_touch_in_four_points(door: &impl Door) {
 
 async fn what_is_not_wanted_is_not_sent_and_what_is_changes_nothing_else(door: &impl Door) {
     table(door).await;
-    let plain = v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: false };
+    let plain = v1::Wants { distance: true, witness: true, depth: true, pairs: true, patch: false, derivatives: false };
     let without = door.collide(wanting(plain)).await.unwrap();
     let mut with = door.collide(wanting(v1::Wants { patch: true, ..plain })).await.unwrap();
     let cost = without.cost.unwrap();

@@ -77,7 +77,12 @@ fn contexts() -> Vec<Context> {
     vec![
         Context::default(),
         Context { wants: distance, margin: 0.15, ..Context::default() },
-        Context { wants: Wants { patch: false, ..Wants::ALL }, cut_off: Some(1.0), max_pairs: 3, ..Context::default() },
+        Context {
+            wants: Wants { patch: false, derivatives: false, ..Wants::ALL },
+            cut_off: Some(1.0),
+            max_pairs: 3,
+            ..Context::default()
+        },
     ]
 }
 
@@ -230,7 +235,8 @@ async fn subjects_have_the_same_bytes_as_through_grpc() {
 async fn sides_witnesses_and_listed_pairs_are_those_of_the_items() {
     let place = Place::with_crane(small()).await;
     let (mut client, mut queries) = (place.client(), place.queries.clone());
-    let context = Context { wants: Wants { patch: false, ..Wants::ALL }, margin: 0.5, ..Context::default() };
+    let context =
+        Context { wants: Wants { patch: false, derivatives: false, ..Wants::ALL }, margin: 0.5, ..Context::default() };
     let question = crane_states(states(40), context);
     let request = to_proto::check_states_request(&target(), &question);
     let told = watched("gRPC", queries.check_states(request)).await.unwrap().into_inner().answer.unwrap();

@@ -83,7 +83,7 @@ fn as_a_client_that_asks_much() {
     let (name, root) = (std::env::var(NAME).unwrap(), std::env::var(ROOT).unwrap());
     let mut client = Client::connect(&name, Path::new(&root)).unwrap();
     let context = Context {
-        wants: clearance::query::Wants { patch: false, ..clearance::query::Wants::ALL },
+        wants: clearance::query::Wants { patch: false, derivatives: false, ..clearance::query::Wants::ALL },
         ..Context::default()
     };
     let subjects = [clearance::transports::shared_memory::PlainSubject::All; 1000];

@@ -52,12 +52,12 @@ async fn what_cannot_be_is_refused_with_its_field() {
     let mut client = place.client();
     let states = crane_states(
         vec![0.0, -0.2, 0.1, -0.3],
-        Context { wants: Wants { patch: false, ..Wants::ALL }, ..Context::default() },
+        Context { wants: Wants { patch: false, derivatives: false, ..Wants::ALL }, ..Context::default() },
     );
     let good = written(&client, Ask::States(&states, 2));
     assert_eq!(send(&mut client, &good).unwrap().items(), 2, "the message that the others are made from");
 
-    let header: [(&str, HeaderChange); 23] = [
+    let header: [(&str, HeaderChange); 24] = [
         ("header.magic", |h| h.magic[3] = 0),
         ("header.version", |h| h.version = 2),
         ("header.abi_hash", |h| h.abi_hash ^= 1),
@@ -72,6 +72,7 @@ async fn what_cannot_be_is_refused_with_its_field() {
         ("mode", |h| h.mode = 2),
         ("context.wants", |h| h.wants = 1 << 9),
         ("context.wants", |h| h.wants = 32), // Contact patches: batches have no columns for them.
+        ("context.wants", |h| h.wants = 64), // Derivatives: nor for them.
         ("context.solver", |h| h.solver = 99),
         ("positions", |h| h.items = 1),
         ("positions", |h| h.items = 3),
@@ -181,7 +182,7 @@ async fn bad_subjects_are_refused_with_item_and_field() {
 async fn random_damage_is_answered_or_refused() {
     let place = Place::with_crane(small()).await;
     let mut client = place.client();
-    let context = Context { wants: Wants { patch: false, ..Wants::ALL }, ..Context::default() };
+    let context = Context { wants: Wants { patch: false, derivatives: false, ..Wants::ALL }, ..Context::default() };
     let states = crane_states(vec![0.0, -0.2, 0.1, -0.3], context.clone());
     let subject = PlainSubject::Shape(PlainShape::sphere(0.1), clearance::geometry::Pose::identity());
     let messages =

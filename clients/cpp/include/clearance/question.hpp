@@ -31,6 +31,8 @@ class Question {
  public:
   /// Replaces what the method would want.
   Question& want(Want wanted);
+  /// How pairs that have points and normals change when their bodies move, as well; exact unless the options say otherwise.
+  Question& derivatives(v1::DerivativeOptions options = {});
   /// Metres: a pair apart but nearer than this is MARGIN.
   Question& margin(double metres);
   /// Metres: pairs farther than this need no distance.

@@ -55,6 +55,7 @@ from .errors import (
 from .estimates import Estimate, EstimateEnd, Estimator, Price
 from .motions import MotionsAnswer, along
 from .overlays import WhatIf, attach, overlay
+from .pair_derivatives import Derivatives, PairDerivatives, TwistDerivatives, derivatives
 from .poses import pose, pose_from_matrix, random_pose
 from .robots import Joint, Robot
 from .shapes import (
@@ -97,6 +98,7 @@ __all__ = [
     "ContactWatch",
     "Cost",
     "DeadlineExceeded",
+    "Derivatives",
     "Estimate",
     "EstimateEnd",
     "Estimator",
@@ -113,6 +115,7 @@ __all__ = [
     "NotFound",
     "OverlapItem",
     "PairAnswer",
+    "PairDerivatives",
     "PoseStream",
     "PosesMade",
     "Price",
@@ -125,6 +128,7 @@ __all__ = [
     "SceneWatch",
     "Side",
     "StatesAnswer",
+    "TwistDerivatives",
     "Unavailable",
     "Verdict",
     "WhatIf",
@@ -145,6 +149,7 @@ __all__ = [
     "cone",
     "convex",
     "cylinder",
+    "derivatives",
     "ellipsoid",
     "group",
     "half_space",

@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 from numpy.typing import NDArray
 
+from .pair_derivatives import PairDerivatives
 from .v1 import geometry_pb2 as geometry
 from .v1 import query_pb2 as messages
 from .v1 import scene_pb2 as scene
@@ -71,6 +72,9 @@ class Cost:
     escalations: int
     patch_corners: int
     patch_cuts: int
+    derivative_separations: int
+    derivative_supports: int
+    derivative_corners: int
 
     @classmethod
     def of(cls, cost: messages.Cost) -> Cost:
@@ -83,6 +87,9 @@ class Cost:
             cost.escalations,
             cost.patch_corners,
             cost.patch_cuts,
+            cost.derivative_separations,
+            cost.derivative_supports,
+            cost.derivative_corners,
         )
 
 
@@ -165,6 +172,8 @@ class PairAnswer:
     termination: str
     #: Where the faces touch; None unless wanted, and of a pair that is proved apart by more than its margin.
     patch: Optional[ContactPatch]
+    #: How the pair changes when its bodies move; None unless wanted, and of a piece that is not a single convex one.
+    derivatives: Optional[PairDerivatives]
 
     @classmethod
     def of(cls, pair: messages.PairAnswer) -> PairAnswer:
@@ -182,6 +191,7 @@ class PairAnswer:
             normal_error=witness.normal_error if witness else None,
             termination=messages.Termination.Name(pair.termination).removeprefix("TERMINATION_"),
             patch=ContactPatch.of(pair.patch) if pair.HasField("patch") else None,
+            derivatives=PairDerivatives.of(pair.derivatives) if pair.HasField("derivatives") else None,
         )
 
 

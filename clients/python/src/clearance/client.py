@@ -20,6 +20,7 @@ from .errors import refused, translated
 from .estimates import Estimator
 from .motions import MotionsAnswer
 from .overlays import WhatIf
+from .pair_derivatives import Derivatives, want_derivatives
 from .poses import Vector, vec3
 from .poses import pose as make_pose
 from .robots import Description, PathLike, Robot
@@ -298,15 +299,17 @@ class Scene:
         margin: float = 0.0,
         cut_off: Optional[float] = None,
         solver: str = "default",
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> ItemAnswers:
         """As :meth:`check_states`, with everything there is to know: which pairs, and where.
 
-        For a few states; a batch of thousands is quicker without.
+        For a few states; a batch of thousands is quicker without. `derivatives`: as for :meth:`distance`, and with the gradient of the clearance
+        with respect to the joints.
         """
-        context = self._context(want, margin, cut_off, solver, at_least, what_if)
+        context = self._context(want, margin, cut_off, solver, at_least, what_if, derivatives)
         context.wants.pairs = True
         request = self._states_request(context, robot, positions, stop_at_first=False)
         with translated():
@@ -383,6 +386,7 @@ class Scene:
         want: str = "distance",
         margin: float = 0.0,
         max_pairs: Optional[int] = None,
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
@@ -391,7 +395,7 @@ class Scene:
 
         Without subjects: which pairs of all bodies are that near.
         """
-        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if)
+        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if, derivatives)
         request.items.items.extend(self._subjects(subjects))
         return self._clearance(request, timeout)
 
@@ -404,12 +408,13 @@ class Scene:
         want: str = "distance",
         margin: float = 0.0,
         max_pairs: Optional[int] = None,
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> ItemAnswers:
         """Which pairs of links, and of links and bodies, are within that many metres in each state?"""
-        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if)
+        request = self._clearance_request(within, want, margin, max_pairs, at_least, what_if, derivatives)
         request.states.robot = robot
         request.states.positions.CopyFrom(
             motion_messages.doubles(positions, "positions", "(n, degrees of freedom)", 2)
@@ -420,9 +425,9 @@ class Scene:
 
     def _clearance_request(
         self, within: float, want: str, margin: float, max_pairs: Optional[int], at_least: Optional[int],
-        what_if: Optional[WhatIf],
+        what_if: Optional[WhatIf], derivatives: Optional[Derivatives] = None,
     ) -> motion.ClearanceRequest:
-        context = self._context(want, margin, None, "default", at_least, what_if)
+        context = self._context(want, margin, None, "default", at_least, what_if, derivatives)
         if max_pairs is not None:
             context.max_pairs = max_pairs
         return motion.ClearanceRequest(context=context, within=within)
@@ -439,12 +444,16 @@ class Scene:
         margin: float = 0.0,
         cut_off: Optional[float] = None,
         solver: str = "default",
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> ItemAnswers:
-        """How far is the nearest body from each subject? Without subjects: the nearest pair of all bodies."""
-        context = self._context(want, margin, cut_off, solver, at_least, what_if)
+        """How far is the nearest body from each subject? Without subjects: the nearest pair of all bodies.
+
+        `derivatives` names how pairs are differentiated, for example `exact`, or is what :func:`derivatives` makes; None: they are not.
+        """
+        context = self._context(want, margin, cut_off, solver, at_least, what_if, derivatives)
         request = query.DistanceRequest(context=context, items=self._subjects(subjects))
         with translated():
             answer = self._client._queries.Distance(request, timeout=timeout or self._client._timeout).answer
@@ -456,12 +465,16 @@ class Scene:
         want: str = "verdict",
         margin: float = 0.0,
         solver: str = "default",
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         what_if: Optional[WhatIf] = None,
         timeout: Optional[float] = None,
     ) -> ItemAnswers:
-        """Which bodies does each subject touch? Without subjects: which pairs of all bodies touch."""
-        context = self._context(want, margin, None, solver, at_least, what_if)
+        """Which bodies does each subject touch? Without subjects: which pairs of all bodies touch.
+
+        `derivatives`: as for :meth:`distance`; of pairs that overlap `want="depth"` or more is needed, too.
+        """
+        context = self._context(want, margin, None, solver, at_least, what_if, derivatives)
         request = query.CollideRequest(context=context, items=self._subjects(subjects))
         with translated():
             answer = self._client._queries.Collide(request, timeout=timeout or self._client._timeout).answer
@@ -481,7 +494,7 @@ class Scene:
             for price in scene.estimate(tolerances=[1e-3, 1e-6]).distance("ball"): print(price)
 
         `tolerances`: metres; by default a ladder down to the floor of rounding. `outputs`: `verdict`, `pairs`, `distance`, `witness`,
-        `depth`, `patch`; by default all that the question has and the scene's declared effects permit. `sample` items at most are
+        `depth`, `patch`, `derivatives`; by default all that the question has and the scene's declared effects permit. `sample` items at most are
         measured for `time` seconds at most; the daemon caps both.
         """
         return Estimator(self, tolerances, outputs, sample, time, timeout)
@@ -569,6 +582,7 @@ class Scene:
         margin: float = 0.0,
         cut_off: Optional[float] = None,
         ignore: Sequence[BodyName] = (),
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> list[NearestItem]:
@@ -576,6 +590,7 @@ class Scene:
         if not subjects:
             raise ValueError("subjects: needs at least one body or shape")
         context = self._cast_context(want, margin, cut_off, ignore, None, at_least)
+        want_derivatives(context, derivatives)
         request = cast.NearestBodiesRequest(context=context, items=self._subjects(subjects), count=count)
         with translated():
             answer = self._client._queries.NearestBodies(request, timeout=timeout or self._client._timeout)
@@ -603,6 +618,7 @@ class Scene:
         margin: Optional[float] = None,
         stays: bool = False,
         solver: str = "default",
+        derivatives: Optional[Derivatives] = None,
         at_least: Optional[int] = None,
         timeout: Optional[float] = None,
     ) -> ContactWatch:
@@ -614,7 +630,7 @@ class Scene:
         """
         touching, within = contact.CONTACT_THRESHOLD_TOUCHING, contact.CONTACT_THRESHOLD_MARGIN
         request = contact.WatchContactsRequest(
-            context=self._context(want, margin or 0.0, None, solver, at_least),
+            context=self._context(want, margin or 0.0, None, solver, at_least, None, derivatives),
             threshold=touching if margin is None else within,
             stays=stays,
         )
@@ -734,6 +750,7 @@ class Scene:
         solver: str,
         at_least: Optional[int],
         what_if: Optional[WhatIf] = None,
+        derivatives: Optional[Derivatives] = None,
     ) -> query.Context:
         context = query.Context(
             scene=self.name,
@@ -745,6 +762,7 @@ class Scene:
         )
         if what_if is not None:
             what_if.put_into(context)
+        want_derivatives(context, derivatives)
         return context
 
     @staticmethod

@@ -34,7 +34,7 @@ class EstimateEnd(IntEnum):
 class Price:
     """What items cost for one output at one tolerance, on one thread."""
 
-    #: `verdict`, `pairs`, `distance`, `witness`, `depth` or `patch`.
+    #: `verdict`, `pairs`, `distance`, `witness`, `depth`, `patch` or `derivatives`.
     output: str
     #: How wide a bracket might be, metres; 0: as narrow as rounding lets it be. None where it changes nothing.
     tolerance: Optional[float]

@@ -19,7 +19,7 @@ import type { Message } from "@bufbuild/protobuf";
  * Describes the file clearance/v1/query.proto.
  */
 export const file_clearance_v1_query: GenFile = /*@__PURE__*/
-  fileDesc("ChhjbGVhcmFuY2UvdjEvcXVlcnkucHJvdG8SDGNsZWFyYW5jZS52MSKDAQoMUmV2aXNpb25SdWxlEhIKBWVwb2NoGAEgASgESAGIAQESJgoGbGF0ZXN0GAIgASgLMhQuY2xlYXJhbmNlLnYxLkxhdGVzdEgAEhEKB2V4YWN0bHkYAyABKARIABISCghhdF9sZWFzdBgEIAEoBEgAQgYKBHJ1bGVCCAoGX2Vwb2NoIggKBkxhdGVzdCJXCgVXYW50cxIQCghkaXN0YW5jZRgBIAEoCBIPCgd3aXRuZXNzGAIgASgIEg0KBWRlcHRoGAMgASgIEg0KBXBhaXJzGAQgASgIEg0KBXBhdGNoGAUgASgIIi4KCEFjY3VyYWN5EhAKCGFic29sdXRlGAEgASgBEhAKCHJlbGF0aXZlGAIgASgBIqEBCgZGaWx0ZXISDgoGZ3JvdXBzGAEgAygJEiUKBmlnbm9yZRgCIAMoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiQKHGRpc3JlZ2FyZF9hbGxvd2VkX2NvbGxpc2lvbnMYAyABKAgSEwoGbGF5ZXJzGAQgASgHSACIAQESEQoEbWFzaxgFIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2sitQQKB0NvbnRleHQSDQoFc2NlbmUYASABKAkSLAoIcmV2aXNpb24YAiABKAsyGi5jbGVhcmFuY2UudjEuUmV2aXNpb25SdWxlEiIKBXdhbnRzGAMgASgLMhMuY2xlYXJhbmNlLnYxLldhbnRzEg4KBm1hcmdpbhgEIAEoARIUCgdjdXRfb2ZmGAUgASgBSACIAQESKAoIYWNjdXJhY3kYBiABKAsyFi5jbGVhcmFuY2UudjEuQWNjdXJhY3kSJAoGZmlsdGVyGAcgASgLMhQuY2xlYXJhbmNlLnYxLkZpbHRlchIWCgltYXhfcGFpcnMYCCABKA1IAYgBARIYCgt0aW1lX2J1ZGdldBgJIAEoAUgCiAEBEi0KC2Fuc3dlcl9mb3JtGAogASgOMhguY2xlYXJhbmNlLnYxLkFuc3dlckZvcm0SJAoGc29sdmVyGAsgASgOMhQuY2xlYXJhbmNlLnYxLlNvbHZlchImCgdvdmVybGF5GAwgASgLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSKwoMYWx0ZXJuYXRpdmVzGA0gAygLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSGQoRaXRlbV9hbHRlcm5hdGl2ZXMYDiADKA0SHQoQbWF4X3BhdGNoX3BvaW50cxgPIAEoDUgDiAEBQgoKCF9jdXRfb2ZmQgwKCl9tYXhfcGFpcnNCDgoMX3RpbWVfYnVkZ2V0QhMKEV9tYXhfcGF0Y2hfcG9pbnRzIpcBChJDaGVja1N0YXRlc1JlcXVlc3QSJgoHY29udGV4dBgBIAEoCzIVLmNsZWFyYW5jZS52MS5Db250ZXh0Eg0KBXJvYm90GAIgASgJEigKCXBvc2l0aW9ucxgDIAEoCzIVLmNsZWFyYW5jZS52MS5Eb3VibGVzEiAKBG1vZGUYBCABKA4yEi5jbGVhcmFuY2UudjEuTW9kZSLGAQoHU3ViamVjdBIrCglhbGxfcGFpcnMYASABKAsyFi5jbGVhcmFuY2UudjEuQWxsUGFpcnNIABIlCgRib2R5GAIgASgLMhUuY2xlYXJhbmNlLnYxLkJvZHlSZWZIABIqCgVzaGFwZRgDIAEoCzIZLmNsZWFyYW5jZS52MS5QbGFjZWRTaGFwZUgAEjMKDWNoYW5nZWRfc2luY2UYBCABKAsyGi5jbGVhcmFuY2UudjEuQ2hhbmdlZFNpbmNlSABCBgoEa2luZCIKCghBbGxQYWlycyIgCgxDaGFuZ2VkU2luY2USEAoIcmV2aXNpb24YASABKAQiUwoLUGxhY2VkU2hhcGUSIgoFc2hhcGUYASABKAsyEy5jbGVhcmFuY2UudjEuU2hhcGUSIAoEcG9zZRgCIAEoCzISLmNsZWFyYW5jZS52MS5Qb3NlIoABCg5Db2xsaWRlUmVxdWVzdBImCgdjb250ZXh0GAEgASgLMhUuY2xlYXJhbmNlLnYxLkNvbnRleHQSJAoFaXRlbXMYAiADKAsyFS5jbGVhcmFuY2UudjEuU3ViamVjdBIgCgRtb2RlGAMgASgOMhIuY2xlYXJhbmNlLnYxLk1vZGUigQEKD0Rpc3RhbmNlUmVxdWVzdBImCgdjb250ZXh0GAEgASgLMhUuY2xlYXJhbmNlLnYxLkNvbnRleHQSJAoFaXRlbXMYAiADKAsyFS5jbGVhcmFuY2UudjEuU3ViamVjdBIgCgRtb2RlGAMgASgOMhIuY2xlYXJhbmNlLnYxLk1vZGUiJwoHQnJhY2tldBINCgVsb3dlchgBIAEoARINCgV1cHBlchgCIAEoASKIAQoEU2lkZRImCgRsaW5rGAEgASgLMhYuY2xlYXJhbmNlLnYxLkxpbmtTaWRlSAASKAoFcXVlcnkYAiABKAsyFy5jbGVhcmFuY2UudjEuUXVlcnlTaWRlSAASJgoEYm9keRgDIAEoCzIWLmNsZWFyYW5jZS52MS5Cb2R5U2lkZUgAQgYKBGtpbmQiOQoITGlua1NpZGUSDAoEbGluaxgBIAEoDRINCgVzaGFwZRgCIAEoDRIQCghzdWJzaGFwZRgDIAEoDSIdCglRdWVyeVNpZGUSEAoIc3Vic2hhcGUYASABKA0iKAoIQm9keVNpZGUSCgoCaWQYASABKAQSEAoIc3Vic2hhcGUYAiABKA0iqAEKB1dpdG5lc3MSJgoKcG9pbnRfb25fYRgBIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEiYKCnBvaW50X29uX2IYAiABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxIiCgZub3JtYWwYAyABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxITCgtwb2ludF9lcnJvchgEIAEoARIUCgxub3JtYWxfZXJyb3IYBSABKAEi6gIKClBhaXJBbnN3ZXISHQoBYRgBIAEoCzISLmNsZWFyYW5jZS52MS5TaWRlEh0KAWIYAiABKAsyEi5jbGVhcmFuY2UudjEuU2lkZRImCgd2ZXJkaWN0GAMgASgOMhUuY2xlYXJhbmNlLnYxLlZlcmRpY3QSMgoNaW5kZXRlcm1pbmFjeRgEIAEoDjIbLmNsZWFyYW5jZS52MS5JbmRldGVybWluYWN5EiYKB2JyYWNrZXQYBSABKAsyFS5jbGVhcmFuY2UudjEuQnJhY2tldBIXCg9zaWduZWRfZGlzdGFuY2UYBiABKAESJgoHd2l0bmVzcxgHIAEoCzIVLmNsZWFyYW5jZS52MS5XaXRuZXNzEi4KC3Rlcm1pbmF0aW9uGAggASgOMhkuY2xlYXJhbmNlLnYxLlRlcm1pbmF0aW9uEikKBXBhdGNoGAkgASgLMhouY2xlYXJhbmNlLnYxLkNvbnRhY3RQYXRjaCKCAQoMQ29udGFjdFBhdGNoEiIKBm5vcm1hbBgBIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEioKBnBvaW50cxgCIAMoCzIaLmNsZWFyYW5jZS52MS5Db250YWN0UG9pbnQSDwoHY29ybmVycxgDIAEoDRIRCgl0cnVuY2F0ZWQYBCABKAgidwoMQ29udGFjdFBvaW50EiYKCnBvaW50X29uX2EYASABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxImCgpwb2ludF9vbl9iGAIgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSFwoPc2lnbmVkX2Rpc3RhbmNlGAMgASgBIqYBCgRDb3N0EhAKCHN1cHBvcnRzGAEgASgEEhYKDmdqa19pdGVyYXRpb25zGAIgASgEEhYKDmVwYV9pdGVyYXRpb25zGAMgASgEEg0KBW5vZGVzGAQgASgEEg0KBXBhaXJzGAUgASgEEhMKC2VzY2FsYXRpb25zGAYgASgEEhUKDXBhdGNoX2Nvcm5lcnMYByABKAQSEgoKcGF0Y2hfY3V0cxgIIAEoBCLjAgoKSXRlbUFuc3dlchImCgd2ZXJkaWN0GAEgASgOMhUuY2xlYXJhbmNlLnYxLlZlcmRpY3QSMgoNaW5kZXRlcm1pbmFjeRgCIAEoDjIbLmNsZWFyYW5jZS52MS5JbmRldGVybWluYWN5EikKB25lYXJlc3QYAyABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIuCgxuZWFyZXN0X3NlbGYYBCABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIvCg1uZWFyZXN0X3NjZW5lGAUgASgLMhguY2xlYXJhbmNlLnYxLlBhaXJBbnN3ZXISJwoFcGFpcnMYBiADKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchIRCgl0cnVuY2F0ZWQYByABKAgSDwoHcHJvYmxlbRgIIAEoCRIgCgRjb3N0GAkgASgLMhIuY2xlYXJhbmNlLnYxLkNvc3Qi9gEKCkJ1bGtBbnN3ZXISEAoIdmVyZGljdHMYASABKAwSFwoPaW5kZXRlcm1pbmFjaWVzGAIgASgMEisKB25lYXJlc3QYAyABKAsyGi5jbGVhcmFuY2UudjEuQnVsa0JyYWNrZXRzEjAKDG5lYXJlc3Rfc2VsZhgEIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSMQoNbmVhcmVzdF9zY2VuZRgFIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSKwoIcHJvYmxlbXMYBiADKAsyGS5jbGVhcmFuY2UudjEuQnVsa1Byb2JsZW0iRQoMQnVsa0JyYWNrZXRzEg0KBWxvd2VyGAEgASgMEg0KBXVwcGVyGAIgASgMEhcKD3NpZ25lZF9kaXN0YW5jZRgDIAEoDCIsCgtCdWxrUHJvYmxlbRIMCgRpdGVtGAEgASgNEg8KB3Byb2JsZW0YAiABKAkisgIKBkFuc3dlchINCgVlcG9jaBgBIAEoBBIQCghyZXZpc2lvbhgCIAEoBBInCgVpdGVtcxgDIAMoCzIYLmNsZWFyYW5jZS52MS5JdGVtQW5zd2VyEiYKBGJ1bGsYBCABKAsyGC5jbGVhcmFuY2UudjEuQnVsa0Fuc3dlchIXCgpzdG9wcGVkX2F0GAUgASgNSACIAQESEwoLb3V0X29mX3RpbWUYBiABKAgSIAoEY29zdBgHIAEoCzISLmNsZWFyYW5jZS52MS5Db3N0Ei0KDGFkZGVkX2JvZGllcxgIIAMoCzIXLmNsZWFyYW5jZS52MS5BZGRlZEJvZHkSKAoIY292ZXJhZ2UYCSABKAsyFi5jbGVhcmFuY2UudjEuQ292ZXJhZ2VCDQoLX3N0b3BwZWRfYXQq4QEKBlNvbHZlchIWChJTT0xWRVJfVU5TUEVDSUZJRUQQABISCg5TT0xWRVJfREVGQVVMVBABEhYKElNPTFZFUl9GUkFOS19XT0xGRRACEg4KClNPTFZFUl9HSksQAxIVChFTT0xWRVJfR0pLX1BPTFlBSxAEEhcKE1NPTFZFUl9HSktfTkVTVEVST1YQBRIiCh5TT0xWRVJfR0pLX05FU1RFUk9WX05PUk1BTElTRUQQBhIOCgpTT0xWRVJfU0FUEAcSDQoJU09MVkVSX1FQEAgSEAoMU09MVkVSX0VYQUNUEAkqVgoKQW5zd2VyRm9ybRIbChdBTlNXRVJfRk9STV9VTlNQRUNJRklFRBAAEhUKEUFOU1dFUl9GT1JNX0lURU1TEAESFAoQQU5TV0VSX0ZPUk1fQlVMSxACKkIKBE1vZGUSFAoQTU9ERV9VTlNQRUNJRklFRBAAEgwKCE1PREVfQUxMEAESFgoSTU9ERV9TVE9QX0FUX0ZJUlNUEAIqqgEKB1ZlcmRpY3QSFwoTVkVSRElDVF9VTlNQRUNJRklFRBAAEhAKDFZFUkRJQ1RfRlJFRRABEhIKDlZFUkRJQ1RfTUFSR0lOEAISFQoRVkVSRElDVF9DT0xMSVNJT04QAxIZChVWRVJESUNUX0lOREVURVJNSU5BVEUQBBITCg9WRVJESUNUX05PVF9SVU4QBRIZChVWRVJESUNUX0lOVkFMSURfSU5QVVQQBiqpAQoNSW5kZXRlcm1pbmFjeRIdChlJTkRFVEVSTUlOQUNZX1VOU1BFQ0lGSUVEEAASGgoWSU5ERVRFUk1JTkFDWV9ST1VORElORxABEiEKHUlOREVURVJNSU5BQ1lfSVRFUkFUSU9OX0xJTUlUEAISHAoYSU5ERVRFUk1JTkFDWV9USU1FX0xJTUlUEAMSHAoYSU5ERVRFUk1JTkFDWV9SRVNPTFVUSU9OEAQq7wEKC1Rlcm1pbmF0aW9uEhsKF1RFUk1JTkFUSU9OX1VOU1BFQ0lGSUVEEAASGwoXVEVSTUlOQVRJT05fQ0xPU0VEX0ZPUk0QARIZChVURVJNSU5BVElPTl9DT05WRVJHRUQQAhIXChNURVJNSU5BVElPTl9ERUNJREVEEAMSHgoaVEVSTUlOQVRJT05fUk9VTkRJTkdfRkxPT1IQBBIfChtURVJNSU5BVElPTl9JVEVSQVRJT05fTElNSVQQBRIaChZURVJNSU5BVElPTl9USU1FX0xJTUlUEAYSFQoRVEVSTUlOQVRJT05fRVhBQ1QQB2IGcHJvdG8z", [file_clearance_v1_geometry, file_clearance_v1_overlay, file_clearance_v1_scene]);
+  fileDesc("ChhjbGVhcmFuY2UvdjEvcXVlcnkucHJvdG8SDGNsZWFyYW5jZS52MSKDAQoMUmV2aXNpb25SdWxlEhIKBWVwb2NoGAEgASgESAGIAQESJgoGbGF0ZXN0GAIgASgLMhQuY2xlYXJhbmNlLnYxLkxhdGVzdEgAEhEKB2V4YWN0bHkYAyABKARIABISCghhdF9sZWFzdBgEIAEoBEgAQgYKBHJ1bGVCCAoGX2Vwb2NoIggKBkxhdGVzdCJsCgVXYW50cxIQCghkaXN0YW5jZRgBIAEoCBIPCgd3aXRuZXNzGAIgASgIEg0KBWRlcHRoGAMgASgIEg0KBXBhaXJzGAQgASgIEg0KBXBhdGNoGAUgASgIEhMKC2Rlcml2YXRpdmVzGAYgASgIIi4KCEFjY3VyYWN5EhAKCGFic29sdXRlGAEgASgBEhAKCHJlbGF0aXZlGAIgASgBIqEBCgZGaWx0ZXISDgoGZ3JvdXBzGAEgAygJEiUKBmlnbm9yZRgCIAMoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmEiQKHGRpc3JlZ2FyZF9hbGxvd2VkX2NvbGxpc2lvbnMYAyABKAgSEwoGbGF5ZXJzGAQgASgHSACIAQESEQoEbWFzaxgFIAEoB0gBiAEBQgkKB19sYXllcnNCBwoFX21hc2si6wQKB0NvbnRleHQSDQoFc2NlbmUYASABKAkSLAoIcmV2aXNpb24YAiABKAsyGi5jbGVhcmFuY2UudjEuUmV2aXNpb25SdWxlEiIKBXdhbnRzGAMgASgLMhMuY2xlYXJhbmNlLnYxLldhbnRzEg4KBm1hcmdpbhgEIAEoARIUCgdjdXRfb2ZmGAUgASgBSACIAQESKAoIYWNjdXJhY3kYBiABKAsyFi5jbGVhcmFuY2UudjEuQWNjdXJhY3kSJAoGZmlsdGVyGAcgASgLMhQuY2xlYXJhbmNlLnYxLkZpbHRlchIWCgltYXhfcGFpcnMYCCABKA1IAYgBARIYCgt0aW1lX2J1ZGdldBgJIAEoAUgCiAEBEi0KC2Fuc3dlcl9mb3JtGAogASgOMhguY2xlYXJhbmNlLnYxLkFuc3dlckZvcm0SJAoGc29sdmVyGAsgASgOMhQuY2xlYXJhbmNlLnYxLlNvbHZlchImCgdvdmVybGF5GAwgASgLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSKwoMYWx0ZXJuYXRpdmVzGA0gAygLMhUuY2xlYXJhbmNlLnYxLk92ZXJsYXkSGQoRaXRlbV9hbHRlcm5hdGl2ZXMYDiADKA0SHQoQbWF4X3BhdGNoX3BvaW50cxgPIAEoDUgDiAEBEjQKC2Rlcml2YXRpdmVzGBAgASgLMh8uY2xlYXJhbmNlLnYxLkRlcml2YXRpdmVPcHRpb25zQgoKCF9jdXRfb2ZmQgwKCl9tYXhfcGFpcnNCDgoMX3RpbWVfYnVkZ2V0QhMKEV9tYXhfcGF0Y2hfcG9pbnRzIqMBChFEZXJpdmF0aXZlT3B0aW9ucxIuCgZtZXRob2QYASABKA4yHi5jbGVhcmFuY2UudjEuRGVyaXZhdGl2ZU1ldGhvZBIUCgdlcHNpbG9uGAIgASgBSACIAQESFAoHc2FtcGxlcxgDIAEoDUgBiAEBEhEKBHNlZWQYBCABKARIAogBAUIKCghfZXBzaWxvbkIKCghfc2FtcGxlc0IHCgVfc2VlZCKXAQoSQ2hlY2tTdGF0ZXNSZXF1ZXN0EiYKB2NvbnRleHQYASABKAsyFS5jbGVhcmFuY2UudjEuQ29udGV4dBINCgVyb2JvdBgCIAEoCRIoCglwb3NpdGlvbnMYAyABKAsyFS5jbGVhcmFuY2UudjEuRG91YmxlcxIgCgRtb2RlGAQgASgOMhIuY2xlYXJhbmNlLnYxLk1vZGUixgEKB1N1YmplY3QSKwoJYWxsX3BhaXJzGAEgASgLMhYuY2xlYXJhbmNlLnYxLkFsbFBhaXJzSAASJQoEYm9keRgCIAEoCzIVLmNsZWFyYW5jZS52MS5Cb2R5UmVmSAASKgoFc2hhcGUYAyABKAsyGS5jbGVhcmFuY2UudjEuUGxhY2VkU2hhcGVIABIzCg1jaGFuZ2VkX3NpbmNlGAQgASgLMhouY2xlYXJhbmNlLnYxLkNoYW5nZWRTaW5jZUgAQgYKBGtpbmQiCgoIQWxsUGFpcnMiIAoMQ2hhbmdlZFNpbmNlEhAKCHJldmlzaW9uGAEgASgEIlMKC1BsYWNlZFNoYXBlEiIKBXNoYXBlGAEgASgLMhMuY2xlYXJhbmNlLnYxLlNoYXBlEiAKBHBvc2UYAiABKAsyEi5jbGVhcmFuY2UudjEuUG9zZSKAAQoOQ29sbGlkZVJlcXVlc3QSJgoHY29udGV4dBgBIAEoCzIVLmNsZWFyYW5jZS52MS5Db250ZXh0EiQKBWl0ZW1zGAIgAygLMhUuY2xlYXJhbmNlLnYxLlN1YmplY3QSIAoEbW9kZRgDIAEoDjISLmNsZWFyYW5jZS52MS5Nb2RlIoEBCg9EaXN0YW5jZVJlcXVlc3QSJgoHY29udGV4dBgBIAEoCzIVLmNsZWFyYW5jZS52MS5Db250ZXh0EiQKBWl0ZW1zGAIgAygLMhUuY2xlYXJhbmNlLnYxLlN1YmplY3QSIAoEbW9kZRgDIAEoDjISLmNsZWFyYW5jZS52MS5Nb2RlIicKB0JyYWNrZXQSDQoFbG93ZXIYASABKAESDQoFdXBwZXIYAiABKAEiiAEKBFNpZGUSJgoEbGluaxgBIAEoCzIWLmNsZWFyYW5jZS52MS5MaW5rU2lkZUgAEigKBXF1ZXJ5GAIgASgLMhcuY2xlYXJhbmNlLnYxLlF1ZXJ5U2lkZUgAEiYKBGJvZHkYAyABKAsyFi5jbGVhcmFuY2UudjEuQm9keVNpZGVIAEIGCgRraW5kIjkKCExpbmtTaWRlEgwKBGxpbmsYASABKA0SDQoFc2hhcGUYAiABKA0SEAoIc3Vic2hhcGUYAyABKA0iHQoJUXVlcnlTaWRlEhAKCHN1YnNoYXBlGAEgASgNIigKCEJvZHlTaWRlEgoKAmlkGAEgASgEEhAKCHN1YnNoYXBlGAIgASgNIqgBCgdXaXRuZXNzEiYKCnBvaW50X29uX2EYASABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxImCgpwb2ludF9vbl9iGAIgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSIgoGbm9ybWFsGAMgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSEwoLcG9pbnRfZXJyb3IYBCABKAESFAoMbm9ybWFsX2Vycm9yGAUgASgBIp4DCgpQYWlyQW5zd2VyEh0KAWEYASABKAsyEi5jbGVhcmFuY2UudjEuU2lkZRIdCgFiGAIgASgLMhIuY2xlYXJhbmNlLnYxLlNpZGUSJgoHdmVyZGljdBgDIAEoDjIVLmNsZWFyYW5jZS52MS5WZXJkaWN0EjIKDWluZGV0ZXJtaW5hY3kYBCABKA4yGy5jbGVhcmFuY2UudjEuSW5kZXRlcm1pbmFjeRImCgdicmFja2V0GAUgASgLMhUuY2xlYXJhbmNlLnYxLkJyYWNrZXQSFwoPc2lnbmVkX2Rpc3RhbmNlGAYgASgBEiYKB3dpdG5lc3MYByABKAsyFS5jbGVhcmFuY2UudjEuV2l0bmVzcxIuCgt0ZXJtaW5hdGlvbhgIIAEoDjIZLmNsZWFyYW5jZS52MS5UZXJtaW5hdGlvbhIpCgVwYXRjaBgJIAEoCzIaLmNsZWFyYW5jZS52MS5Db250YWN0UGF0Y2gSMgoLZGVyaXZhdGl2ZXMYCiABKAsyHS5jbGVhcmFuY2UudjEuUGFpckRlcml2YXRpdmVzIoIBCgxDb250YWN0UGF0Y2gSIgoGbm9ybWFsGAEgASgLMhIuY2xlYXJhbmNlLnYxLlZlYzMSKgoGcG9pbnRzGAIgAygLMhouY2xlYXJhbmNlLnYxLkNvbnRhY3RQb2ludBIPCgdjb3JuZXJzGAMgASgNEhEKCXRydW5jYXRlZBgEIAEoCCJ3CgxDb250YWN0UG9pbnQSJgoKcG9pbnRfb25fYRgBIAEoCzISLmNsZWFyYW5jZS52MS5WZWMzEiYKCnBvaW50X29uX2IYAiABKAsyEi5jbGVhcmFuY2UudjEuVmVjMxIXCg9zaWduZWRfZGlzdGFuY2UYAyABKAEiwAIKD1BhaXJEZXJpdmF0aXZlcxIsCgRvZl9hGAEgASgLMh4uY2xlYXJhbmNlLnYxLlR3aXN0RGVyaXZhdGl2ZXMSLAoEb2ZfYhgCIAEoCzIeLmNsZWFyYW5jZS52MS5Ud2lzdERlcml2YXRpdmVzEg4KBmpvaW50cxgDIAMoARIuCgZtZXRob2QYBCABKA4yHi5jbGVhcmFuY2UudjEuRGVyaXZhdGl2ZU1ldGhvZBIUCgxjb25kaXRpb25pbmcYBSABKAESEAoIcmVzaWR1YWwYBiABKAESDwoHZXBzaWxvbhgHIAEoARIPCgdzYW1wbGVzGAggASgNEgwKBHNlZWQYCSABKAQSEAoIaXNfdmFsaWQYCiABKAgSEQoJb25fYm9yZGVyGAsgASgIEhQKDGlzX2NvbnRlc3RlZBgMIAEoCCJjChBUd2lzdERlcml2YXRpdmVzEhcKD3NpZ25lZF9kaXN0YW5jZRgBIAMoARIOCgZub3JtYWwYAiADKAESEgoKcG9pbnRfb25fYRgDIAMoARISCgpwb2ludF9vbl9iGAQgAygBIv8BCgRDb3N0EhAKCHN1cHBvcnRzGAEgASgEEhYKDmdqa19pdGVyYXRpb25zGAIgASgEEhYKDmVwYV9pdGVyYXRpb25zGAMgASgEEg0KBW5vZGVzGAQgASgEEg0KBXBhaXJzGAUgASgEEhMKC2VzY2FsYXRpb25zGAYgASgEEhUKDXBhdGNoX2Nvcm5lcnMYByABKAQSEgoKcGF0Y2hfY3V0cxgIIAEoBBIeChZkZXJpdmF0aXZlX3NlcGFyYXRpb25zGAkgASgEEhsKE2Rlcml2YXRpdmVfc3VwcG9ydHMYCiABKAQSGgoSZGVyaXZhdGl2ZV9jb3JuZXJzGAsgASgEIuMCCgpJdGVtQW5zd2VyEiYKB3ZlcmRpY3QYASABKA4yFS5jbGVhcmFuY2UudjEuVmVyZGljdBIyCg1pbmRldGVybWluYWN5GAIgASgOMhsuY2xlYXJhbmNlLnYxLkluZGV0ZXJtaW5hY3kSKQoHbmVhcmVzdBgDIAEoCzIYLmNsZWFyYW5jZS52MS5QYWlyQW5zd2VyEi4KDG5lYXJlc3Rfc2VsZhgEIAEoCzIYLmNsZWFyYW5jZS52MS5QYWlyQW5zd2VyEi8KDW5lYXJlc3Rfc2NlbmUYBSABKAsyGC5jbGVhcmFuY2UudjEuUGFpckFuc3dlchInCgVwYWlycxgGIAMoCzIYLmNsZWFyYW5jZS52MS5QYWlyQW5zd2VyEhEKCXRydW5jYXRlZBgHIAEoCBIPCgdwcm9ibGVtGAggASgJEiAKBGNvc3QYCSABKAsyEi5jbGVhcmFuY2UudjEuQ29zdCL2AQoKQnVsa0Fuc3dlchIQCgh2ZXJkaWN0cxgBIAEoDBIXCg9pbmRldGVybWluYWNpZXMYAiABKAwSKwoHbmVhcmVzdBgDIAEoCzIaLmNsZWFyYW5jZS52MS5CdWxrQnJhY2tldHMSMAoMbmVhcmVzdF9zZWxmGAQgASgLMhouY2xlYXJhbmNlLnYxLkJ1bGtCcmFja2V0cxIxCg1uZWFyZXN0X3NjZW5lGAUgASgLMhouY2xlYXJhbmNlLnYxLkJ1bGtCcmFja2V0cxIrCghwcm9ibGVtcxgGIAMoCzIZLmNsZWFyYW5jZS52MS5CdWxrUHJvYmxlbSJFCgxCdWxrQnJhY2tldHMSDQoFbG93ZXIYASABKAwSDQoFdXBwZXIYAiABKAwSFwoPc2lnbmVkX2Rpc3RhbmNlGAMgASgMIiwKC0J1bGtQcm9ibGVtEgwKBGl0ZW0YASABKA0SDwoHcHJvYmxlbRgCIAEoCSKyAgoGQW5zd2VyEg0KBWVwb2NoGAEgASgEEhAKCHJldmlzaW9uGAIgASgEEicKBWl0ZW1zGAMgAygLMhguY2xlYXJhbmNlLnYxLkl0ZW1BbnN3ZXISJgoEYnVsaxgEIAEoCzIYLmNsZWFyYW5jZS52MS5CdWxrQW5zd2VyEhcKCnN0b3BwZWRfYXQYBSABKA1IAIgBARITCgtvdXRfb2ZfdGltZRgGIAEoCBIgCgRjb3N0GAcgASgLMhIuY2xlYXJhbmNlLnYxLkNvc3QSLQoMYWRkZWRfYm9kaWVzGAggAygLMhcuY2xlYXJhbmNlLnYxLkFkZGVkQm9keRIoCghjb3ZlcmFnZRgJIAEoCzIWLmNsZWFyYW5jZS52MS5Db3ZlcmFnZUINCgtfc3RvcHBlZF9hdCrhAQoGU29sdmVyEhYKElNPTFZFUl9VTlNQRUNJRklFRBAAEhIKDlNPTFZFUl9ERUZBVUxUEAESFgoSU09MVkVSX0ZSQU5LX1dPTEZFEAISDgoKU09MVkVSX0dKSxADEhUKEVNPTFZFUl9HSktfUE9MWUFLEAQSFwoTU09MVkVSX0dKS19ORVNURVJPVhAFEiIKHlNPTFZFUl9HSktfTkVTVEVST1ZfTk9STUFMSVNFRBAGEg4KClNPTFZFUl9TQVQQBxINCglTT0xWRVJfUVAQCBIQCgxTT0xWRVJfRVhBQ1QQCSqTAgoQRGVyaXZhdGl2ZU1ldGhvZBIhCh1ERVJJVkFUSVZFX01FVEhPRF9VTlNQRUNJRklFRBAAEhsKF0RFUklWQVRJVkVfTUVUSE9EX0VYQUNUEAESIAocREVSSVZBVElWRV9NRVRIT0RfRVhBQ1RfQ0VMTBACEicKI0RFUklWQVRJVkVfTUVUSE9EX0ZJTklURV9ESUZGRVJFTkNFEAMSIAocREVSSVZBVElWRV9NRVRIT0RfU01PT1RIRURfMBAEEikKJURFUklWQVRJVkVfTUVUSE9EX1NNT09USEVEXzFfR0FVU1NJQU4QBRInCiNERVJJVkFUSVZFX01FVEhPRF9TTU9PVEhFRF8xX0dVTUJFTBAGKlYKCkFuc3dlckZvcm0SGwoXQU5TV0VSX0ZPUk1fVU5TUEVDSUZJRUQQABIVChFBTlNXRVJfRk9STV9JVEVNUxABEhQKEEFOU1dFUl9GT1JNX0JVTEsQAipCCgRNb2RlEhQKEE1PREVfVU5TUEVDSUZJRUQQABIMCghNT0RFX0FMTBABEhYKEk1PREVfU1RPUF9BVF9GSVJTVBACKqoBCgdWZXJkaWN0EhcKE1ZFUkRJQ1RfVU5TUEVDSUZJRUQQABIQCgxWRVJESUNUX0ZSRUUQARISCg5WRVJESUNUX01BUkdJThACEhUKEVZFUkRJQ1RfQ09MTElTSU9OEAMSGQoVVkVSRElDVF9JTkRFVEVSTUlOQVRFEAQSEwoPVkVSRElDVF9OT1RfUlVOEAUSGQoVVkVSRElDVF9JTlZBTElEX0lOUFVUEAYqqQEKDUluZGV0ZXJtaW5hY3kSHQoZSU5ERVRFUk1JTkFDWV9VTlNQRUNJRklFRBAAEhoKFklOREVURVJNSU5BQ1lfUk9VTkRJTkcQARIhCh1JTkRFVEVSTUlOQUNZX0lURVJBVElPTl9MSU1JVBACEhwKGElOREVURVJNSU5BQ1lfVElNRV9MSU1JVBADEhwKGElOREVURVJNSU5BQ1lfUkVTT0xVVElPThAEKu8BCgtUZXJtaW5hdGlvbhIbChdURVJNSU5BVElPTl9VTlNQRUNJRklFRBAAEhsKF1RFUk1JTkFUSU9OX0NMT1NFRF9GT1JNEAESGQoVVEVSTUlOQVRJT05fQ09OVkVSR0VEEAISFwoTVEVSTUlOQVRJT05fREVDSURFRBADEh4KGlRFUk1JTkFUSU9OX1JPVU5ESU5HX0ZMT09SEAQSHwobVEVSTUlOQVRJT05fSVRFUkFUSU9OX0xJTUlUEAUSGgoWVEVSTUlOQVRJT05fVElNRV9MSU1JVBAGEhUKEVRFUk1JTkFUSU9OX0VYQUNUEAdiBnByb3RvMw", [file_clearance_v1_geometry, file_clearance_v1_overlay, file_clearance_v1_scene]);
 
 /**
  * Which state of the scene is asked. One that is still to come is waited for until the deadline, then UNAVAILABLE.
@@ -124,11 +124,18 @@ export type Wants = Message<"clearance.v1.Wants"> & {
    * where the faces touch of pairs that are told and not proved apart by more than their margin; includes `witness` and
    * `depth`
    *
-   * 6 to 15 are kept for motion, derivatives and declared effects.
-   *
    * @generated from field: bool patch = 5;
    */
   patch: boolean;
+
+  /**
+   * how pairs that are told change when their bodies move, wherever they have a witness; includes `witness`. Not in bulk form
+   *
+   * 7 to 15 are kept for motion and declared effects.
+   *
+   * @generated from field: bool derivatives = 6;
+   */
+  derivatives: boolean;
 };
 
 /**
@@ -330,6 +337,13 @@ export type Context = Message<"clearance.v1.Context"> & {
    * @generated from field: optional uint32 max_patch_points = 15;
    */
   maxPatchPoints?: number | undefined;
+
+  /**
+   * how derivatives are made, where they are wanted; absent: as an empty one
+   *
+   * @generated from field: clearance.v1.DerivativeOptions derivatives = 16;
+   */
+  derivatives?: DerivativeOptions | undefined;
 };
 
 /**
@@ -338,6 +352,51 @@ export type Context = Message<"clearance.v1.Context"> & {
  */
 export const ContextSchema: GenMessage<Context> = /*@__PURE__*/
   messageDesc(file_clearance_v1_query, 5);
+
+/**
+ * How derivatives are made.
+ *
+ * @generated from message clearance.v1.DerivativeOptions
+ */
+export type DerivativeOptions = Message<"clearance.v1.DerivativeOptions"> & {
+  /**
+   * unspecified: DERIVATIVE_METHOD_EXACT
+   *
+   * @generated from field: clearance.v1.DerivativeMethod method = 1;
+   */
+  method: DerivativeMethod;
+
+  /**
+   * How far smoothing reaches, a factor, finite and not negative: moves of DERIVATIVE_METHOD_SMOOTHED_0 as a part of the smaller
+   * body's radius, and in radians; turned directions of DERIVATIVE_METHOD_SMOOTHED_1_GAUSSIAN in radians; noise on heights of
+   * DERIVATIVE_METHOD_SMOOTHED_1_GUMBEL as a part of each piece's radius. 0 or absent: chosen from the pair
+   *
+   * @generated from field: optional double epsilon = 2;
+   */
+  epsilon?: number | undefined;
+
+  /**
+   * Pairs of samples, there and back, of the random methods, count, from 1 to 65536 and to `max_derivative_samples` of the limits;
+   * absent: 64
+   *
+   * @generated from field: optional uint32 samples = 3;
+   */
+  samples?: number | undefined;
+
+  /**
+   * of the random methods: equal seeds have equal bytes; absent: 0
+   *
+   * @generated from field: optional uint64 seed = 4;
+   */
+  seed?: bigint | undefined;
+};
+
+/**
+ * Describes the message clearance.v1.DerivativeOptions.
+ * Use `create(DerivativeOptionsSchema)` to create a new message.
+ */
+export const DerivativeOptionsSchema: GenMessage<DerivativeOptions> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_query, 6);
 
 /**
  * Is the robot free in these states?
@@ -380,7 +439,7 @@ export type CheckStatesRequest = Message<"clearance.v1.CheckStatesRequest"> & {
  * Use `create(CheckStatesRequestSchema)` to create a new message.
  */
 export const CheckStatesRequestSchema: GenMessage<CheckStatesRequest> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 6);
+  messageDesc(file_clearance_v1_query, 7);
 
 /**
  * What is held against the scene.
@@ -431,7 +490,7 @@ export type Subject = Message<"clearance.v1.Subject"> & {
  * Use `create(SubjectSchema)` to create a new message.
  */
 export const SubjectSchema: GenMessage<Subject> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 7);
+  messageDesc(file_clearance_v1_query, 8);
 
 /**
  * Every pair of bodies of the scene; robots are not looked at.
@@ -446,7 +505,7 @@ export type AllPairs = Message<"clearance.v1.AllPairs"> & {
  * Use `create(AllPairsSchema)` to create a new message.
  */
 export const AllPairsSchema: GenMessage<AllPairs> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 8);
+  messageDesc(file_clearance_v1_query, 9);
 
 /**
  * Every pair of bodies that changed after a revision, once: a side of it was added, moved, reshaped, put in other layers or
@@ -469,7 +528,7 @@ export type ChangedSince = Message<"clearance.v1.ChangedSince"> & {
  * Use `create(ChangedSinceSchema)` to create a new message.
  */
 export const ChangedSinceSchema: GenMessage<ChangedSince> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 9);
+  messageDesc(file_clearance_v1_query, 10);
 
 /**
  * A shape that is not in the scene.
@@ -497,7 +556,7 @@ export type PlacedShape = Message<"clearance.v1.PlacedShape"> & {
  * Use `create(PlacedShapeSchema)` to create a new message.
  */
 export const PlacedShapeSchema: GenMessage<PlacedShape> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 10);
+  messageDesc(file_clearance_v1_query, 11);
 
 /**
  * What touches? Adds the want `pairs`.
@@ -532,7 +591,7 @@ export type CollideRequest = Message<"clearance.v1.CollideRequest"> & {
  * Use `create(CollideRequestSchema)` to create a new message.
  */
 export const CollideRequestSchema: GenMessage<CollideRequest> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 11);
+  messageDesc(file_clearance_v1_query, 12);
 
 /**
  * How far is the nearest? Adds the want `distance`.
@@ -567,7 +626,7 @@ export type DistanceRequest = Message<"clearance.v1.DistanceRequest"> & {
  * Use `create(DistanceRequestSchema)` to create a new message.
  */
 export const DistanceRequestSchema: GenMessage<DistanceRequest> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 12);
+  messageDesc(file_clearance_v1_query, 13);
 
 /**
  * A proved interval: the signed distance, in the truth, is in lower..=upper.
@@ -595,7 +654,7 @@ export type Bracket = Message<"clearance.v1.Bracket"> & {
  * Use `create(BracketSchema)` to create a new message.
  */
 export const BracketSchema: GenMessage<Bracket> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 13);
+  messageDesc(file_clearance_v1_query, 14);
 
 /**
  * One side of a pair.
@@ -632,7 +691,7 @@ export type Side = Message<"clearance.v1.Side"> & {
  * Use `create(SideSchema)` to create a new message.
  */
 export const SideSchema: GenMessage<Side> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 14);
+  messageDesc(file_clearance_v1_query, 15);
 
 /**
  * A link of the robot that was asked about.
@@ -667,7 +726,7 @@ export type LinkSide = Message<"clearance.v1.LinkSide"> & {
  * Use `create(LinkSideSchema)` to create a new message.
  */
 export const LinkSideSchema: GenMessage<LinkSide> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 15);
+  messageDesc(file_clearance_v1_query, 16);
 
 /**
  * The bare shape of the question.
@@ -688,7 +747,7 @@ export type QuerySide = Message<"clearance.v1.QuerySide"> & {
  * Use `create(QuerySideSchema)` to create a new message.
  */
 export const QuerySideSchema: GenMessage<QuerySide> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 16);
+  messageDesc(file_clearance_v1_query, 17);
 
 /**
  * A body of the scene.
@@ -716,7 +775,7 @@ export type BodySide = Message<"clearance.v1.BodySide"> & {
  * Use `create(BodySideSchema)` to create a new message.
  */
 export const BodySideSchema: GenMessage<BodySide> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 17);
+  messageDesc(file_clearance_v1_query, 18);
 
 /**
  * Points and normal of a pair: point_on_b - point_on_a = signed_distance * normal.
@@ -767,7 +826,7 @@ export type Witness = Message<"clearance.v1.Witness"> & {
  * Use `create(WitnessSchema)` to create a new message.
  */
 export const WitnessSchema: GenMessage<Witness> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 18);
+  messageDesc(file_clearance_v1_query, 19);
 
 /**
  * What is known about one pair.
@@ -835,11 +894,19 @@ export type PairAnswer = Message<"clearance.v1.PairAnswer"> & {
    * Where wanted, of a pair that is not proved apart by more than its margin; absent for a piece that is not a single convex
    * one, as of a mesh within a compound
    *
-   * 10 to 15 are kept for motion and derivatives.
-   *
    * @generated from field: clearance.v1.ContactPatch patch = 9;
    */
   patch?: ContactPatch | undefined;
+
+  /**
+   * Where wanted, of a pair that has a witness: how it changes when its bodies move; absent for a piece that is not a single
+   * convex one
+   *
+   * 11 to 15 are kept for motion.
+   *
+   * @generated from field: clearance.v1.PairDerivatives derivatives = 10;
+   */
+  derivatives?: PairDerivatives | undefined;
 };
 
 /**
@@ -847,7 +914,7 @@ export type PairAnswer = Message<"clearance.v1.PairAnswer"> & {
  * Use `create(PairAnswerSchema)` to create a new message.
  */
 export const PairAnswerSchema: GenMessage<PairAnswer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 19);
+  messageDesc(file_clearance_v1_query, 20);
 
 /**
  * Where the faces touch, or are nearest, of the two convex pieces that a pair names: what of them lies above one another along
@@ -891,7 +958,7 @@ export type ContactPatch = Message<"clearance.v1.ContactPatch"> & {
  * Use `create(ContactPatchSchema)` to create a new message.
  */
 export const ContactPatchSchema: GenMessage<ContactPatch> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 20);
+  messageDesc(file_clearance_v1_query, 21);
 
 /**
  * A point of a contact patch: point_on_b - point_on_a = signed_distance * normal.
@@ -926,7 +993,152 @@ export type ContactPoint = Message<"clearance.v1.ContactPoint"> & {
  * Use `create(ContactPointSchema)` to create a new message.
  */
 export const ContactPointSchema: GenMessage<ContactPoint> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 21);
+  messageDesc(file_clearance_v1_query, 22);
+
+/**
+ * How a pair changes when its bodies move.
+ *
+ * @generated from message clearance.v1.PairDerivatives
+ */
+export type PairDerivatives = Message<"clearance.v1.PairDerivatives"> & {
+  /**
+   * with respect to moves of side A, in the world's axes
+   *
+   * @generated from field: clearance.v1.TwistDerivatives of_a = 1;
+   */
+  ofA?: TwistDerivatives | undefined;
+
+  /**
+   * with respect to moves of side B, in the world's axes
+   *
+   * @generated from field: clearance.v1.TwistDerivatives of_b = 2;
+   */
+  ofB?: TwistDerivatives | undefined;
+
+  /**
+   * Of a pair with a side that is a robot's, in questions about its states: the gradient of the signed distance with respect to
+   * the joints' positions, one number for each of a state's; metres per radian, or per metre of sliding joints. Else empty
+   *
+   * @generated from field: repeated double joints = 3;
+   */
+  joints: number[];
+
+  /**
+   * how they were made
+   *
+   * @generated from field: clearance.v1.DerivativeMethod method = 4;
+   */
+  method: DerivativeMethod;
+
+  /**
+   * Metres: the least eigenvalue of distance plus radii of curvature across the normal, by which a change of the normal is
+   * divided. Infinity where a face or two edges hold the normal; not positive in an overlap so deep that the least depth is along
+   * another normal; NaN where it is not known, as of differences and DERIVATIVE_METHOD_SMOOTHED_0
+   *
+   * @generated from field: double conditioning = 5;
+   */
+  conditioning: number;
+
+  /**
+   * What is wrong at most. By formula, metres: how far the vector between the witnesses is off the normal. Of differences, a
+   * factor. Of random methods, in its unit: the standard error of the largest entry that is random
+   *
+   * @generated from field: double residual = 6;
+   */
+  residual: number;
+
+  /**
+   * what was used, as in `DerivativeOptions`; of differences the step, metres and radians; else 0
+   *
+   * @generated from field: double epsilon = 7;
+   */
+  epsilon: number;
+
+  /**
+   * pairs of samples that were used, count; 0 where nothing is random
+   *
+   * @generated from field: uint32 samples = 8;
+   */
+  samples: number;
+
+  /**
+   * what was used; 0 where nothing is random
+   *
+   * @generated from field: uint64 seed = 9;
+   */
+  seed: bigint;
+
+  /**
+   * false where there is no one witness, or where `conditioning` is not positive
+   *
+   * @generated from field: bool is_valid = 10;
+   */
+  isValid: boolean;
+
+  /**
+   * The witness is where several features meet, so that a move may lead to another one. Only formulas and differences tell
+   *
+   * @generated from field: bool on_border = 11;
+   */
+  onBorder: boolean;
+
+  /**
+   * another pair of pieces may be as near: a move may make it the deciding one
+   *
+   * @generated from field: bool is_contested = 12;
+   */
+  isContested: boolean;
+};
+
+/**
+ * Describes the message clearance.v1.PairDerivatives.
+ * Use `create(PairDerivativesSchema)` to create a new message.
+ */
+export const PairDerivativesSchema: GenMessage<PairDerivatives> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_query, 23);
+
+/**
+ * Derivatives with respect to the twist of one side about its own origin (of a link that of its frame, of a body that a link
+ * holds the link's), in the world's axes. Columns: velocity along x, y, z (metres), turn about x, y, z (radians).
+ *
+ * @generated from message clearance.v1.TwistDerivatives
+ */
+export type TwistDerivatives = Message<"clearance.v1.TwistDerivatives"> & {
+  /**
+   * 6 numbers; metres per metre and per radian
+   *
+   * @generated from field: repeated double signed_distance = 1;
+   */
+  signedDistance: number[];
+
+  /**
+   * world frame, 3 rows of 6, row by row; per metre and per radian
+   *
+   * @generated from field: repeated double normal = 2;
+   */
+  normal: number[];
+
+  /**
+   * World frame, 3 rows of 6, row by row; metres per metre and per radian. Of the place in space, not of a point held fast in A
+   *
+   * @generated from field: repeated double point_on_a = 3;
+   */
+  pointOnA: number[];
+
+  /**
+   * world frame, 3 rows of 6, row by row; metres per metre and per radian
+   *
+   * @generated from field: repeated double point_on_b = 4;
+   */
+  pointOnB: number[];
+};
+
+/**
+ * Describes the message clearance.v1.TwistDerivatives.
+ * Use `create(TwistDerivativesSchema)` to create a new message.
+ */
+export const TwistDerivativesSchema: GenMessage<TwistDerivatives> = /*@__PURE__*/
+  messageDesc(file_clearance_v1_query, 24);
 
 /**
  * What the work cost. Counters only, so that equal work has equal bytes.
@@ -989,6 +1201,27 @@ export type Cost = Message<"clearance.v1.Cost"> & {
    * @generated from field: uint64 patch_cuts = 8;
    */
   patchCuts: bigint;
+
+  /**
+   * separations that derivatives asked again, in moved places, count
+   *
+   * @generated from field: uint64 derivative_separations = 9;
+   */
+  derivativeSeparations: bigint;
+
+  /**
+   * support points that derivatives asked one shape for, count
+   *
+   * @generated from field: uint64 derivative_supports = 10;
+   */
+  derivativeSupports: bigint;
+
+  /**
+   * corners of shapes that derivatives looked at, count
+   *
+   * @generated from field: uint64 derivative_corners = 11;
+   */
+  derivativeCorners: bigint;
 };
 
 /**
@@ -996,7 +1229,7 @@ export type Cost = Message<"clearance.v1.Cost"> & {
  * Use `create(CostSchema)` to create a new message.
  */
 export const CostSchema: GenMessage<Cost> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 22);
+  messageDesc(file_clearance_v1_query, 25);
 
 /**
  * The answer to one item.
@@ -1074,7 +1307,7 @@ export type ItemAnswer = Message<"clearance.v1.ItemAnswer"> & {
  * Use `create(ItemAnswerSchema)` to create a new message.
  */
 export const ItemAnswerSchema: GenMessage<ItemAnswer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 23);
+  messageDesc(file_clearance_v1_query, 26);
 
 /**
  * Verdicts and brackets of all items as arrays, in the order of the items.
@@ -1130,7 +1363,7 @@ export type BulkAnswer = Message<"clearance.v1.BulkAnswer"> & {
  * Use `create(BulkAnswerSchema)` to create a new message.
  */
 export const BulkAnswerSchema: GenMessage<BulkAnswer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 24);
+  messageDesc(file_clearance_v1_query, 27);
 
 /**
  * Brackets as arrays: 8 bytes an item, IEEE 754 binary64, little-endian. NaN: the item has no such pair.
@@ -1165,7 +1398,7 @@ export type BulkBrackets = Message<"clearance.v1.BulkBrackets"> & {
  * Use `create(BulkBracketsSchema)` to create a new message.
  */
 export const BulkBracketsSchema: GenMessage<BulkBrackets> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 25);
+  messageDesc(file_clearance_v1_query, 28);
 
 /**
  * What is wrong with one item of a bulk answer.
@@ -1193,7 +1426,7 @@ export type BulkProblem = Message<"clearance.v1.BulkProblem"> & {
  * Use `create(BulkProblemSchema)` to create a new message.
  */
 export const BulkProblemSchema: GenMessage<BulkProblem> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 26);
+  messageDesc(file_clearance_v1_query, 29);
 
 /**
  * The answer to a question.
@@ -1270,7 +1503,7 @@ export type Answer = Message<"clearance.v1.Answer"> & {
  * Use `create(AnswerSchema)` to create a new message.
  */
 export const AnswerSchema: GenMessage<Answer> = /*@__PURE__*/
-  messageDesc(file_clearance_v1_query, 27);
+  messageDesc(file_clearance_v1_query, 30);
 
 /**
  * A way to find the signed distance of two convex shapes. Every solver's bracket is proved; they differ in work and in how
@@ -1357,6 +1590,69 @@ export const SolverSchema: GenEnum<Solver> = /*@__PURE__*/
   enumDesc(file_clearance_v1_query, 0);
 
 /**
+ * A way to derivatives.
+ *
+ * @generated from enum clearance.v1.DerivativeMethod
+ */
+export enum DerivativeMethod {
+  /**
+   * as DERIVATIVE_METHOD_EXACT; never sent in an answer
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_UNSPECIFIED = 0;
+   */
+  UNSPECIFIED = 0,
+
+  /**
+   * By formula. Of spheres, ellipsoids and both grown by a radius it holds round about, through contact into a shallow overlap. Of
+   * others it is DERIVATIVE_METHOD_EXACT_CELL, and the answer says so
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_EXACT = 1;
+   */
+  EXACT = 1,
+
+  /**
+   * by formula, as long as the same corners, edges, faces and rims face each other
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_EXACT_CELL = 2;
+   */
+  EXACT_CELL = 2,
+
+  /**
+   * central differences of 24 moved places
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_FINITE_DIFFERENCE = 3;
+   */
+  FINITE_DIFFERENCE = 3,
+
+  /**
+   * of the mean over random moves of both bodies
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_SMOOTHED_0 = 4;
+   */
+  SMOOTHED_0 = 4,
+
+  /**
+   * with support functions that are means over directions turned at random
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_SMOOTHED_1_GAUSSIAN = 5;
+   */
+  SMOOTHED_1_GAUSSIAN = 5,
+
+  /**
+   * with support functions in which corners weigh as a softmax of their heights says
+   *
+   * @generated from enum value: DERIVATIVE_METHOD_SMOOTHED_1_GUMBEL = 6;
+   */
+  SMOOTHED_1_GUMBEL = 6,
+}
+
+/**
+ * Describes the enum clearance.v1.DerivativeMethod.
+ */
+export const DerivativeMethodSchema: GenEnum<DerivativeMethod> = /*@__PURE__*/
+  enumDesc(file_clearance_v1_query, 1);
+
+/**
  * How the items of an answer are written.
  *
  * @generated from enum clearance.v1.AnswerForm
@@ -1377,7 +1673,7 @@ export enum AnswerForm {
   ITEMS = 1,
 
   /**
-   * `Answer.bulk`: arrays of verdicts and brackets; no pairs, witnesses, patches
+   * `Answer.bulk`: arrays of verdicts and brackets; no pairs, witnesses, patches; derivatives are refused
    *
    * @generated from enum value: ANSWER_FORM_BULK = 2;
    */
@@ -1388,7 +1684,7 @@ export enum AnswerForm {
  * Describes the enum clearance.v1.AnswerForm.
  */
 export const AnswerFormSchema: GenEnum<AnswerForm> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_query, 1);
+  enumDesc(file_clearance_v1_query, 2);
 
 /**
  * All items, or up to the first hit.
@@ -1422,7 +1718,7 @@ export enum Mode {
  * Describes the enum clearance.v1.Mode.
  */
 export const ModeSchema: GenEnum<Mode> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_query, 2);
+  enumDesc(file_clearance_v1_query, 3);
 
 /**
  * What a bracket decides.
@@ -1484,7 +1780,7 @@ export enum Verdict {
  * Describes the enum clearance.v1.Verdict.
  */
 export const VerdictSchema: GenEnum<Verdict> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_query, 3);
+  enumDesc(file_clearance_v1_query, 4);
 
 /**
  * Why a bracket straddles the decision.
@@ -1532,7 +1828,7 @@ export enum Indeterminacy {
  * Describes the enum clearance.v1.Indeterminacy.
  */
 export const IndeterminacySchema: GenEnum<Indeterminacy> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_query, 4);
+  enumDesc(file_clearance_v1_query, 5);
 
 /**
  * How the work on a pair stopped.
@@ -1601,5 +1897,5 @@ export enum Termination {
  * Describes the enum clearance.v1.Termination.
  */
 export const TerminationSchema: GenEnum<Termination> = /*@__PURE__*/
-  enumDesc(file_clearance_v1_query, 5);
+  enumDesc(file_clearance_v1_query, 6);
 

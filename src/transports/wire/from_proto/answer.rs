@@ -1,6 +1,7 @@
 //! Answers, as a client reads them.
 
 use super::Path;
+use super::derivatives::derivatives;
 use super::scene::party;
 use crate::geometry::Vec3;
 use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
@@ -68,7 +69,7 @@ pub(super) fn pair(pair: &v1::PairAnswer) -> Result<PairAnswer, NotAnAnswer> {
         signed_distance: pair.signed_distance,
         witness: pair.witness.as_ref().map(witness).transpose()?,
         patch: pair.patch.as_ref().map(patch).transpose()?.map(Box::new),
-        derivatives: None,
+        derivatives: pair.derivatives.as_ref().map(derivatives).transpose()?.map(Box::new),
         termination: termination(pair.termination)?,
     })
 }
@@ -145,8 +146,19 @@ fn witness(witness: &v1::Witness) -> Result<Witness, NotAnAnswer> {
 }
 
 pub(super) fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
-    let v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
-        cost.ok_or(NotAnAnswer("cost"))?;
+    let v1::Cost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    } = cost.ok_or(NotAnAnswer("cost"))?;
     Ok(Cost {
         supports,
         gjk_iterations,
@@ -156,6 +168,8 @@ pub(super) fn cost(cost: Option<v1::Cost>) -> Result<Cost, NotAnAnswer> {
         escalations,
         patch_corners,
         patch_cuts,
-        ..Cost::default()
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
     })
 }

@@ -81,6 +81,7 @@ fn known_output(output: v1::Output) -> Option<Output> {
         v1::Output::Witness => Some(Output::Witness),
         v1::Output::Depth => Some(Output::Depth),
         v1::Output::Patch => Some(Output::Patch),
+        v1::Output::Derivatives => Some(Output::Derivatives),
     }
 }
 
@@ -144,7 +145,30 @@ fn verdict_counts(counts: &v1::VerdictCounts) -> Verdicts {
 }
 
 fn mean_cost(cost: &v1::MeanCost) -> MeanCost {
-    let v1::MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
-        *cost;
-    MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
+    let v1::MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    } = *cost;
+    MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    }
 }

@@ -5,6 +5,7 @@ mod answer;
 mod cast;
 mod cast_answer;
 mod contact;
+mod derivatives;
 mod estimate;
 mod fields;
 mod geometry;

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::derivatives::derivative_goal;
 use super::{Path, geometry};
 use crate::narrow_phase::Solver;
 use crate::query::{CheckStates, Context, Filter, Mode, PairQuery, Subject, Wants, Worlds};
@@ -59,13 +60,17 @@ pub fn patience(timeout: Option<Duration>, context: Option<&v1::Context>) -> Res
 /// How the items are to be answered.
 ///
 /// # Errors
-/// A number that stands for nothing.
+/// A number that stands for nothing; derivatives in a form that has no room for them.
 pub fn answer_form(context: Option<&v1::Context>) -> Result<AnswerForm, ServiceError> {
     let number = context.map_or(0, |context| context.answer_form);
     match v1::AnswerForm::try_from(number) {
         Ok(v1::AnswerForm::Unspecified | v1::AnswerForm::Items) => Ok(AnswerForm::Items),
         Ok(v1::AnswerForm::Bulk) => {
             let wants = context.and_then(|context| context.wants).unwrap_or_default();
+            if wants.derivatives {
+                let problem = "asks for derivatives, which the bulk form has no columns for";
+                return Err(ServiceError::invalid("context.wants", problem));
+            }
             Ok(AnswerForm::Bulk { brackets: self::wants(&wants).closed().distance })
         }
         Err(_) => Err(unknown_value(&Path::root("context").field("answer_form"), number)),
@@ -163,13 +168,13 @@ pub(super) fn context(context: Option<&v1::Context>, snapshot: &Snapshot) -> Res
         filter: filter(&path.field("filter"), context.filter.as_ref(), snapshot)?,
         max_pairs: context.max_pairs.map_or(defaults.max_pairs, |pairs| pairs as usize),
         max_patch_points: context.max_patch_points.map_or(defaults.max_patch_points, |points| points as usize),
-        derivatives: defaults.derivatives,
+        derivatives: derivative_goal(&path.field("derivatives"), context.derivatives.as_ref())?,
     })
 }
 
 fn wants(wants: &v1::Wants) -> Wants {
-    let v1::Wants { distance, witness, depth, pairs, patch } = *wants;
-    Wants { distance, witness, depth, pairs, patch, derivatives: false }
+    let v1::Wants { distance, witness, depth, pairs, patch, derivatives } = *wants;
+    Wants { distance, witness, depth, pairs, patch, derivatives }
 }
 
 fn solver(number: i32) -> Result<Solver, ServiceError> {

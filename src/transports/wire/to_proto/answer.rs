@@ -1,6 +1,7 @@
 //! Answers to questions.
 
 use super::declared::coverage;
+use super::derivatives::pair_derivatives;
 use super::geometry::vec3;
 use super::{count, little_endian};
 use crate::narrow_phase::{Bracket, ContactPatch, ContactPoint, Cost, Termination};
@@ -112,6 +113,7 @@ pub(super) fn pair(pair: &PairAnswer) -> v1::PairAnswer {
         witness: pair.witness.as_ref().map(witness),
         termination: termination(pair.termination).into(),
         patch: pair.patch.as_deref().map(patch),
+        derivatives: pair.derivatives.as_deref().map(pair_derivatives),
     }
 }
 
@@ -187,7 +189,30 @@ fn bracket(bracket: Bracket) -> v1::Bracket {
 }
 
 pub(super) fn cost(cost: Cost) -> v1::Cost {
-    let Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts, .. } =
-        cost;
-    v1::Cost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
+    let Cost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    } = cost;
+    v1::Cost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    }
 }

@@ -56,6 +56,7 @@ fn output(output: Output) -> v1::Output {
         Output::Witness => v1::Output::Witness,
         Output::Depth => v1::Output::Depth,
         Output::Patch => v1::Output::Patch,
+        Output::Derivatives => v1::Output::Derivatives,
     }
 }
 
@@ -76,9 +77,32 @@ fn verdict_counts(verdicts: Verdicts) -> v1::VerdictCounts {
 }
 
 fn mean_cost(cost: MeanCost) -> v1::MeanCost {
-    let MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts } =
-        cost;
-    v1::MeanCost { supports, gjk_iterations, epa_iterations, nodes, pairs, escalations, patch_corners, patch_cuts }
+    let MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    } = cost;
+    v1::MeanCost {
+        supports,
+        gjk_iterations,
+        epa_iterations,
+        nodes,
+        pairs,
+        escalations,
+        patch_corners,
+        patch_cuts,
+        derivative_separations,
+        derivative_supports,
+        derivative_corners,
+    }
 }
 
 /// What would this question cost?

@@ -5,6 +5,7 @@ mod cast;
 mod cast_question;
 mod contact;
 mod declared;
+mod derivatives;
 mod error;
 mod estimate;
 mod geometry;
@@ -26,6 +27,7 @@ pub use cast_question::{
 };
 pub use contact::contact_messages;
 pub use declared::declare_effects;
+pub use derivatives::pair_derivatives;
 pub use error::{ErrorCard, query_error, reason_name};
 pub use estimate::{estimate_request, estimate_response};
 pub use geometry::{pose, shape};

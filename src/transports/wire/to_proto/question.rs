@@ -1,5 +1,6 @@
 //! Questions, as a client sends them.
 
+use super::derivatives::derivative_options;
 use super::geometry::{pose, shape};
 use super::{count, little_endian};
 use crate::narrow_phase::Solver;
@@ -44,18 +45,19 @@ pub(super) fn doubles(numbers: &[f64]) -> v1::Doubles {
 }
 
 pub(super) fn context(target: &Target, context: &Context) -> v1::Context {
-    let Wants { distance, witness, depth, pairs, patch, derivatives: _ } = context.wants;
+    let Wants { distance, witness, depth, pairs, patch, derivatives } = context.wants;
     let (absolute, relative) = (context.accuracy.absolute, context.accuracy.relative);
     v1::Context {
         scene: target.scene.clone(),
         revision: Some(revision_rule(target.revision)),
-        wants: Some(v1::Wants { distance, witness, depth, pairs, patch }),
+        wants: Some(v1::Wants { distance, witness, depth, pairs, patch, derivatives }),
         margin: context.margin,
         cut_off: context.cut_off,
         accuracy: Some(v1::Accuracy { absolute, relative }),
         filter: Some(filter(&context.filter)),
         max_pairs: Some(count(context.max_pairs)),
         max_patch_points: Some(count(context.max_patch_points)),
+        derivatives: Some(derivative_options(&context.derivatives)),
         time_budget: None,
         answer_form: v1::AnswerForm::Items.into(),
         solver: solver(context.solver).into(),

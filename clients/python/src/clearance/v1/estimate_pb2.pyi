@@ -18,6 +18,7 @@ class Output(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     OUTPUT_WITNESS: _ClassVar[Output]
     OUTPUT_DEPTH: _ClassVar[Output]
     OUTPUT_PATCH: _ClassVar[Output]
+    OUTPUT_DERIVATIVES: _ClassVar[Output]
 
 class EstimateEnd(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
@@ -32,6 +33,7 @@ OUTPUT_DISTANCE: Output
 OUTPUT_WITNESS: Output
 OUTPUT_DEPTH: Output
 OUTPUT_PATCH: Output
+OUTPUT_DERIVATIVES: Output
 ESTIMATE_END_UNSPECIFIED: EstimateEnd
 ESTIMATE_END_COMPLETE: EstimateEnd
 ESTIMATE_END_TIME: EstimateEnd
@@ -146,7 +148,7 @@ class ItemWidths(_message.Message):
     def __init__(self, items: _Optional[int] = ..., median: _Optional[float] = ..., largest: _Optional[float] = ..., wider: _Optional[int] = ...) -> None: ...
 
 class MeanCost(_message.Message):
-    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts")
+    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts", "derivative_separations", "derivative_supports", "derivative_corners")
     SUPPORTS_FIELD_NUMBER: _ClassVar[int]
     GJK_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     EPA_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -155,6 +157,9 @@ class MeanCost(_message.Message):
     ESCALATIONS_FIELD_NUMBER: _ClassVar[int]
     PATCH_CORNERS_FIELD_NUMBER: _ClassVar[int]
     PATCH_CUTS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_SEPARATIONS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_SUPPORTS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_CORNERS_FIELD_NUMBER: _ClassVar[int]
     supports: float
     gjk_iterations: float
     epa_iterations: float
@@ -163,4 +168,7 @@ class MeanCost(_message.Message):
     escalations: float
     patch_corners: float
     patch_cuts: float
-    def __init__(self, supports: _Optional[float] = ..., gjk_iterations: _Optional[float] = ..., epa_iterations: _Optional[float] = ..., nodes: _Optional[float] = ..., pairs: _Optional[float] = ..., escalations: _Optional[float] = ..., patch_corners: _Optional[float] = ..., patch_cuts: _Optional[float] = ...) -> None: ...
+    derivative_separations: float
+    derivative_supports: float
+    derivative_corners: float
+    def __init__(self, supports: _Optional[float] = ..., gjk_iterations: _Optional[float] = ..., epa_iterations: _Optional[float] = ..., nodes: _Optional[float] = ..., pairs: _Optional[float] = ..., escalations: _Optional[float] = ..., patch_corners: _Optional[float] = ..., patch_cuts: _Optional[float] = ..., derivative_separations: _Optional[float] = ..., derivative_supports: _Optional[float] = ..., derivative_corners: _Optional[float] = ...) -> None: ...

@@ -23,6 +23,16 @@ class Solver(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     SOLVER_QP: _ClassVar[Solver]
     SOLVER_EXACT: _ClassVar[Solver]
 
+class DerivativeMethod(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
+    __slots__ = ()
+    DERIVATIVE_METHOD_UNSPECIFIED: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_EXACT: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_EXACT_CELL: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_FINITE_DIFFERENCE: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_SMOOTHED_0: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_SMOOTHED_1_GAUSSIAN: _ClassVar[DerivativeMethod]
+    DERIVATIVE_METHOD_SMOOTHED_1_GUMBEL: _ClassVar[DerivativeMethod]
+
 class AnswerForm(int, metaclass=_enum_type_wrapper.EnumTypeWrapper):
     __slots__ = ()
     ANSWER_FORM_UNSPECIFIED: _ClassVar[AnswerForm]
@@ -73,6 +83,13 @@ SOLVER_GJK_NESTEROV_NORMALISED: Solver
 SOLVER_SAT: Solver
 SOLVER_QP: Solver
 SOLVER_EXACT: Solver
+DERIVATIVE_METHOD_UNSPECIFIED: DerivativeMethod
+DERIVATIVE_METHOD_EXACT: DerivativeMethod
+DERIVATIVE_METHOD_EXACT_CELL: DerivativeMethod
+DERIVATIVE_METHOD_FINITE_DIFFERENCE: DerivativeMethod
+DERIVATIVE_METHOD_SMOOTHED_0: DerivativeMethod
+DERIVATIVE_METHOD_SMOOTHED_1_GAUSSIAN: DerivativeMethod
+DERIVATIVE_METHOD_SMOOTHED_1_GUMBEL: DerivativeMethod
 ANSWER_FORM_UNSPECIFIED: AnswerForm
 ANSWER_FORM_ITEMS: AnswerForm
 ANSWER_FORM_BULK: AnswerForm
@@ -117,18 +134,20 @@ class Latest(_message.Message):
     def __init__(self) -> None: ...
 
 class Wants(_message.Message):
-    __slots__ = ("distance", "witness", "depth", "pairs", "patch")
+    __slots__ = ("distance", "witness", "depth", "pairs", "patch", "derivatives")
     DISTANCE_FIELD_NUMBER: _ClassVar[int]
     WITNESS_FIELD_NUMBER: _ClassVar[int]
     DEPTH_FIELD_NUMBER: _ClassVar[int]
     PAIRS_FIELD_NUMBER: _ClassVar[int]
     PATCH_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVES_FIELD_NUMBER: _ClassVar[int]
     distance: bool
     witness: bool
     depth: bool
     pairs: bool
     patch: bool
-    def __init__(self, distance: bool = ..., witness: bool = ..., depth: bool = ..., pairs: bool = ..., patch: bool = ...) -> None: ...
+    derivatives: bool
+    def __init__(self, distance: bool = ..., witness: bool = ..., depth: bool = ..., pairs: bool = ..., patch: bool = ..., derivatives: bool = ...) -> None: ...
 
 class Accuracy(_message.Message):
     __slots__ = ("absolute", "relative")
@@ -153,7 +172,7 @@ class Filter(_message.Message):
     def __init__(self, groups: _Optional[_Iterable[str]] = ..., ignore: _Optional[_Iterable[_Union[_scene_pb2.BodyRef, _Mapping]]] = ..., disregard_allowed_collisions: bool = ..., layers: _Optional[int] = ..., mask: _Optional[int] = ...) -> None: ...
 
 class Context(_message.Message):
-    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver", "overlay", "alternatives", "item_alternatives", "max_patch_points")
+    __slots__ = ("scene", "revision", "wants", "margin", "cut_off", "accuracy", "filter", "max_pairs", "time_budget", "answer_form", "solver", "overlay", "alternatives", "item_alternatives", "max_patch_points", "derivatives")
     SCENE_FIELD_NUMBER: _ClassVar[int]
     REVISION_FIELD_NUMBER: _ClassVar[int]
     WANTS_FIELD_NUMBER: _ClassVar[int]
@@ -169,6 +188,7 @@ class Context(_message.Message):
     ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
     ITEM_ALTERNATIVES_FIELD_NUMBER: _ClassVar[int]
     MAX_PATCH_POINTS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVES_FIELD_NUMBER: _ClassVar[int]
     scene: str
     revision: RevisionRule
     wants: Wants
@@ -184,7 +204,20 @@ class Context(_message.Message):
     alternatives: _containers.RepeatedCompositeFieldContainer[_overlay_pb2.Overlay]
     item_alternatives: _containers.RepeatedScalarFieldContainer[int]
     max_patch_points: int
-    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ..., overlay: _Optional[_Union[_overlay_pb2.Overlay, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[_overlay_pb2.Overlay, _Mapping]]] = ..., item_alternatives: _Optional[_Iterable[int]] = ..., max_patch_points: _Optional[int] = ...) -> None: ...
+    derivatives: DerivativeOptions
+    def __init__(self, scene: _Optional[str] = ..., revision: _Optional[_Union[RevisionRule, _Mapping]] = ..., wants: _Optional[_Union[Wants, _Mapping]] = ..., margin: _Optional[float] = ..., cut_off: _Optional[float] = ..., accuracy: _Optional[_Union[Accuracy, _Mapping]] = ..., filter: _Optional[_Union[Filter, _Mapping]] = ..., max_pairs: _Optional[int] = ..., time_budget: _Optional[float] = ..., answer_form: _Optional[_Union[AnswerForm, str]] = ..., solver: _Optional[_Union[Solver, str]] = ..., overlay: _Optional[_Union[_overlay_pb2.Overlay, _Mapping]] = ..., alternatives: _Optional[_Iterable[_Union[_overlay_pb2.Overlay, _Mapping]]] = ..., item_alternatives: _Optional[_Iterable[int]] = ..., max_patch_points: _Optional[int] = ..., derivatives: _Optional[_Union[DerivativeOptions, _Mapping]] = ...) -> None: ...
+
+class DerivativeOptions(_message.Message):
+    __slots__ = ("method", "epsilon", "samples", "seed")
+    METHOD_FIELD_NUMBER: _ClassVar[int]
+    EPSILON_FIELD_NUMBER: _ClassVar[int]
+    SAMPLES_FIELD_NUMBER: _ClassVar[int]
+    SEED_FIELD_NUMBER: _ClassVar[int]
+    method: DerivativeMethod
+    epsilon: float
+    samples: int
+    seed: int
+    def __init__(self, method: _Optional[_Union[DerivativeMethod, str]] = ..., epsilon: _Optional[float] = ..., samples: _Optional[int] = ..., seed: _Optional[int] = ...) -> None: ...
 
 class CheckStatesRequest(_message.Message):
     __slots__ = ("context", "robot", "positions", "mode")
@@ -305,7 +338,7 @@ class Witness(_message.Message):
     def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., normal: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_error: _Optional[float] = ..., normal_error: _Optional[float] = ...) -> None: ...
 
 class PairAnswer(_message.Message):
-    __slots__ = ("a", "b", "verdict", "indeterminacy", "bracket", "signed_distance", "witness", "termination", "patch")
+    __slots__ = ("a", "b", "verdict", "indeterminacy", "bracket", "signed_distance", "witness", "termination", "patch", "derivatives")
     A_FIELD_NUMBER: _ClassVar[int]
     B_FIELD_NUMBER: _ClassVar[int]
     VERDICT_FIELD_NUMBER: _ClassVar[int]
@@ -315,6 +348,7 @@ class PairAnswer(_message.Message):
     WITNESS_FIELD_NUMBER: _ClassVar[int]
     TERMINATION_FIELD_NUMBER: _ClassVar[int]
     PATCH_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVES_FIELD_NUMBER: _ClassVar[int]
     a: Side
     b: Side
     verdict: Verdict
@@ -324,7 +358,8 @@ class PairAnswer(_message.Message):
     witness: Witness
     termination: Termination
     patch: ContactPatch
-    def __init__(self, a: _Optional[_Union[Side, _Mapping]] = ..., b: _Optional[_Union[Side, _Mapping]] = ..., verdict: _Optional[_Union[Verdict, str]] = ..., indeterminacy: _Optional[_Union[Indeterminacy, str]] = ..., bracket: _Optional[_Union[Bracket, _Mapping]] = ..., signed_distance: _Optional[float] = ..., witness: _Optional[_Union[Witness, _Mapping]] = ..., termination: _Optional[_Union[Termination, str]] = ..., patch: _Optional[_Union[ContactPatch, _Mapping]] = ...) -> None: ...
+    derivatives: PairDerivatives
+    def __init__(self, a: _Optional[_Union[Side, _Mapping]] = ..., b: _Optional[_Union[Side, _Mapping]] = ..., verdict: _Optional[_Union[Verdict, str]] = ..., indeterminacy: _Optional[_Union[Indeterminacy, str]] = ..., bracket: _Optional[_Union[Bracket, _Mapping]] = ..., signed_distance: _Optional[float] = ..., witness: _Optional[_Union[Witness, _Mapping]] = ..., termination: _Optional[_Union[Termination, str]] = ..., patch: _Optional[_Union[ContactPatch, _Mapping]] = ..., derivatives: _Optional[_Union[PairDerivatives, _Mapping]] = ...) -> None: ...
 
 class ContactPatch(_message.Message):
     __slots__ = ("normal", "points", "corners", "truncated")
@@ -348,8 +383,48 @@ class ContactPoint(_message.Message):
     signed_distance: float
     def __init__(self, point_on_a: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., point_on_b: _Optional[_Union[_geometry_pb2.Vec3, _Mapping]] = ..., signed_distance: _Optional[float] = ...) -> None: ...
 
+class PairDerivatives(_message.Message):
+    __slots__ = ("of_a", "of_b", "joints", "method", "conditioning", "residual", "epsilon", "samples", "seed", "is_valid", "on_border", "is_contested")
+    OF_A_FIELD_NUMBER: _ClassVar[int]
+    OF_B_FIELD_NUMBER: _ClassVar[int]
+    JOINTS_FIELD_NUMBER: _ClassVar[int]
+    METHOD_FIELD_NUMBER: _ClassVar[int]
+    CONDITIONING_FIELD_NUMBER: _ClassVar[int]
+    RESIDUAL_FIELD_NUMBER: _ClassVar[int]
+    EPSILON_FIELD_NUMBER: _ClassVar[int]
+    SAMPLES_FIELD_NUMBER: _ClassVar[int]
+    SEED_FIELD_NUMBER: _ClassVar[int]
+    IS_VALID_FIELD_NUMBER: _ClassVar[int]
+    ON_BORDER_FIELD_NUMBER: _ClassVar[int]
+    IS_CONTESTED_FIELD_NUMBER: _ClassVar[int]
+    of_a: TwistDerivatives
+    of_b: TwistDerivatives
+    joints: _containers.RepeatedScalarFieldContainer[float]
+    method: DerivativeMethod
+    conditioning: float
+    residual: float
+    epsilon: float
+    samples: int
+    seed: int
+    is_valid: bool
+    on_border: bool
+    is_contested: bool
+    def __init__(self, of_a: _Optional[_Union[TwistDerivatives, _Mapping]] = ..., of_b: _Optional[_Union[TwistDerivatives, _Mapping]] = ..., joints: _Optional[_Iterable[float]] = ..., method: _Optional[_Union[DerivativeMethod, str]] = ..., conditioning: _Optional[float] = ..., residual: _Optional[float] = ..., epsilon: _Optional[float] = ..., samples: _Optional[int] = ..., seed: _Optional[int] = ..., is_valid: bool = ..., on_border: bool = ..., is_contested: bool = ...) -> None: ...
+
+class TwistDerivatives(_message.Message):
+    __slots__ = ("signed_distance", "normal", "point_on_a", "point_on_b")
+    SIGNED_DISTANCE_FIELD_NUMBER: _ClassVar[int]
+    NORMAL_FIELD_NUMBER: _ClassVar[int]
+    POINT_ON_A_FIELD_NUMBER: _ClassVar[int]
+    POINT_ON_B_FIELD_NUMBER: _ClassVar[int]
+    signed_distance: _containers.RepeatedScalarFieldContainer[float]
+    normal: _containers.RepeatedScalarFieldContainer[float]
+    point_on_a: _containers.RepeatedScalarFieldContainer[float]
+    point_on_b: _containers.RepeatedScalarFieldContainer[float]
+    def __init__(self, signed_distance: _Optional[_Iterable[float]] = ..., normal: _Optional[_Iterable[float]] = ..., point_on_a: _Optional[_Iterable[float]] = ..., point_on_b: _Optional[_Iterable[float]] = ...) -> None: ...
+
 class Cost(_message.Message):
-    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts")
+    __slots__ = ("supports", "gjk_iterations", "epa_iterations", "nodes", "pairs", "escalations", "patch_corners", "patch_cuts", "derivative_separations", "derivative_supports", "derivative_corners")
     SUPPORTS_FIELD_NUMBER: _ClassVar[int]
     GJK_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
     EPA_ITERATIONS_FIELD_NUMBER: _ClassVar[int]
@@ -358,6 +433,9 @@ class Cost(_message.Message):
     ESCALATIONS_FIELD_NUMBER: _ClassVar[int]
     PATCH_CORNERS_FIELD_NUMBER: _ClassVar[int]
     PATCH_CUTS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_SEPARATIONS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_SUPPORTS_FIELD_NUMBER: _ClassVar[int]
+    DERIVATIVE_CORNERS_FIELD_NUMBER: _ClassVar[int]
     supports: int
     gjk_iterations: int
     epa_iterations: int
@@ -366,7 +444,10 @@ class Cost(_message.Message):
     escalations: int
     patch_corners: int
     patch_cuts: int
-    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ..., escalations: _Optional[int] = ..., patch_corners: _Optional[int] = ..., patch_cuts: _Optional[int] = ...) -> None: ...
+    derivative_separations: int
+    derivative_supports: int
+    derivative_corners: int
+    def __init__(self, supports: _Optional[int] = ..., gjk_iterations: _Optional[int] = ..., epa_iterations: _Optional[int] = ..., nodes: _Optional[int] = ..., pairs: _Optional[int] = ..., escalations: _Optional[int] = ..., patch_corners: _Optional[int] = ..., patch_cuts: _Optional[int] = ..., derivative_separations: _Optional[int] = ..., derivative_supports: _Optional[int] = ..., derivative_corners: _Optional[int] = ...) -> None: ...
 
 class ItemAnswer(_message.Message):
     __slots__ = ("verdict", "indeterminacy", "nearest", "nearest_self", "nearest_scene", "pairs", "truncated", "problem", "cost")
