@@ -201,6 +201,7 @@ fn of_robots() -> Vec<Call> {
 
 fn of_bodies() -> Vec<Call> {
     let probe = placed(cuboid(0.1, 0.1, 0.1), turned(0.4, 0.4, 1.2, [1.0, 2.0, 3.0, 4.0]));
+    let beside_ball = placed(sphere(0.05), at(0.1, 1.2, 1.2));
     let subjects = || vec![all_pairs(), body(named("ball")), probe.clone(), changed_since(1)];
     let asking = |context, items| v1::DistanceRequest { context: Some(context), ..distance(items) };
     let solver = |solver: v1::Solver| v1::Context { solver: solver.into(), ..wanting(true, true, true, false) };
@@ -222,6 +223,7 @@ fn of_bodies() -> Vec<Call> {
         ask("Queries/Clearance", near),
         ask("Queries/Collide", v1::CollideRequest { context: Some(patches(0.6)), ..collide(subjects()) }),
         ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Exact), subjects())),
+        ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Exact), vec![beside_ball])),
         ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::FiniteDifference), vec![probe.clone()])),
         ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Smoothed0), vec![probe.clone()])),
         ask("Queries/Distance", asking(derivatives(v1::DerivativeMethod::Smoothed1Gaussian), vec![probe.clone()])),
