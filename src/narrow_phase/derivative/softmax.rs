@@ -14,6 +14,8 @@
 //! q <= LEFT_OUT of what is kept. With L left out and K kept, `Cov = (1-q) Cov_K + q Cov_L + q (1-q) (m_K - m_L)(m_K - m_L)^T`, and corners within a
 //! ball of radius R have covariances of norm R^2 at most and means no farther than 2 R from each other: leaving L out changes Cov by at
 //! most 5 q R^2. R^2 is at most 3 r^2, r half the longest side of the box. That bound is told.
+//!
+//! Of a mesh the piece is a triangle, whose three corners are all that is smoothed: what lies beyond its edges is not seen.
 
 use super::super::support::{NO_HINT, corner, farthest};
 use super::side::Mat2;
