@@ -213,7 +213,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     num / den
 }
 
-fn of<'a>(figures: &'a [Figured], family: Family, method: usize) -> impl Iterator<Item = &'a Figured> {
+fn of(figures: &[Figured], family: Family, method: usize) -> impl Iterator<Item = &Figured> {
     figures.iter().filter(move |figure| figure.family == family && figure.method == method)
 }
 
