@@ -210,7 +210,7 @@ async fn an_estimate_is_taken_off_the_clients_share() {
     let question = Some(v1::estimate_request::Question::Distance(asked));
     let request = v1::EstimateRequest { question, tolerances: vec![1e-3], ..v1::EstimateRequest::default() };
     let told = watched("an estimate", grpc.estimate(request.clone())).await.unwrap();
-    assert_eq!(told.asked, 3 * 20 * 6 + 5);
+    assert_eq!(told.asked, 3 * 20 * 7 + 6);
     let refusal = watched("a refusal", grpc.estimate(request)).await.unwrap_err();
     assert_eq!((refusal.code, refusal.reason.as_str()), (Code::ResourceExhausted, "LIMIT_EXCEEDED"), "{refusal:?}");
 }
