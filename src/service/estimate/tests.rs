@@ -161,8 +161,8 @@ async fn derivatives_have_a_price_where_there_is_code_for_them() {
     let asked = Estimate { outputs, tolerances: vec![1e-6], sample: Some(5), ..estimate() };
     let estimated = ask(patient(), asked).await;
     if cfg!(not(feature = "effect-derivatives")) {
-        let refused = Refused::NotBuilt { field: "context.wants", effect: "derivatives" };
-        assert!(estimated.unwrap_err().to_string().contains(&refused.to_string().replace("context.wants: ", "")));
+        let refusal = estimated.unwrap_err().to_string();
+        assert!(refusal.contains("derivatives") && refusal.contains("built without"), "{refusal}");
         return;
     }
     let rows = estimated.unwrap().rows;
