@@ -148,7 +148,7 @@ impl ContactTarget {
             };
             let (a, b, found) = (&self.a, &self.b, &state.found);
             let told = derivatives(a, b, &self.at_a, &state.at_b, found, &goal, &Goal::penetration()).ok()?;
-            queries += told.cost.separations;
+            queries += attempt.separations();
             schedule.progressed(state.residuals.norm());
             let jacobian = self.jacobian(&state, &told);
             let (square, slope) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&state.residuals));
@@ -198,6 +198,18 @@ impl ContactTarget {
 }
 
 impl Attempt {
+    /// How often derivatives ask both bodies again. Their counter also has the pairs of pieces among which they look for a rival of the deciding one.
+    fn separations(&self) -> u64 {
+        match self.method {
+            DerivativeMethod::FiniteDifference => 25,
+            DerivativeMethod::Smoothed0 => 2 * u64::from(self.samples),
+            DerivativeMethod::Exact
+            | DerivativeMethod::ExactCell
+            | DerivativeMethod::Smoothed1Gaussian
+            | DerivativeMethod::Smoothed1Gumbel => 0,
+        }
+    }
+
     /// Whether another epsilon, or other samples, may say something else of the same place.
     fn is_smoothed(&self) -> bool {
         match self.method {
