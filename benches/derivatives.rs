@@ -88,8 +88,14 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// The methods, and how many pairs of samples.
-const METHODS: [(DerivativeMethod, &str, u32); 2] =
-    [(DerivativeMethod::Exact, "exact", 1), (DerivativeMethod::ExactCell, "exact_cell", 1)];
+const METHODS: [(DerivativeMethod, &str, u32); 6] = [
+    (DerivativeMethod::Exact, "exact", 1),
+    (DerivativeMethod::ExactCell, "exact_cell", 1),
+    (DerivativeMethod::Smoothed1Gumbel, "smoothed_1, Gumbel", 1),
+    (DerivativeMethod::Smoothed1Gaussian, "smoothed_1, Gaussian, 64 samples", 64),
+    (DerivativeMethod::Smoothed0, "smoothed_0, 64 samples", 64),
+    (DerivativeMethod::FiniteDifference, "finite_difference", 1),
+];
 
 fn main() {
     println!("| pairs of | derivatives | distance and derivatives | to the distance alone | separations | valid |");
